@@ -76,8 +76,8 @@ void Viewers::serve(const std::function<void(Viewer& viewer)>& heard, std::size_
 }
 
 PictureFeed::PictureFeed(Render render, std::string folder,
-                         const std::optional<std::string>& socket)
-    : render_(std::move(render)), folder_(std::move(folder)) {
+                         const std::optional<std::string>& socket, std::size_t in_step)
+    : render_(std::move(render)), folder_(std::move(folder)), in_step_(in_step) {
   std::error_code error;
   if (!folder_.empty() && !std::filesystem::is_directory(folder_) &&
       !std::filesystem::create_directories(folder_, error))
@@ -100,7 +100,8 @@ void PictureFeed::write(const std::string& picture, std::uint64_t cycle) const {
 }
 
 void PictureFeed::serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,
-                        std::size_t waiting) {
+                        bool single_step) {
+  const std::size_t waiting = single_step ? in_step_ : 1;
   if (viewers_)
     viewers_->accept([this] { return joined(before_, ""); }, kAny);
   const bool is_kept = viewers_ && waiting > 1;

@@ -47,15 +47,16 @@ class PictureFeed {
   using Render =
       std::function<std::string(const Scene&, RobotNumber, double head, std::uint64_t cycle)>;
 
-  /// An empty folder: none. A missing folder is created.
-  PictureFeed(Render render, std::string folder, const std::optional<std::string>& socket);
+  /// An empty folder: none. A missing folder is created. `in_step`: the pictures that wait for a
+  /// viewer in single-step, also for one that has yet to come; 1 where no step depends on them.
+  PictureFeed(Render render, std::string folder, const std::optional<std::string>& socket,
+              std::size_t in_step);
 
   void add_to(std::vector<pollfd>& fds) const;
   /// Takes new viewers, sends queued pictures, and adds the picture of `cycle` where it is new. A
-  /// viewer with a full queue does not get it. Where the queue may hold more than one, a late
-  /// viewer gets the earlier pictures as well.
+  /// viewer with a full queue does not get it.
   void serve(const Scene& scene, RobotNumber robot, double head, std::uint64_t cycle,
-             std::size_t waiting);
+             bool single_step);
 
  private:
   void write(const std::string& picture, std::uint64_t cycle) const;
@@ -63,6 +64,7 @@ class PictureFeed {
   Render render_;
   std::string folder_;
   std::optional<Viewers> viewers_;
+  std::size_t in_step_;
   std::uint64_t cycle_ = 0;
   std::deque<std::string> before_;
 };

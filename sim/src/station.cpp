@@ -14,7 +14,7 @@
 namespace saphira::sim {
 namespace {
 
-// The lead of a client in single step over a viewer of its pictures.
+// The lead of a client in single step over a viewer of its stereo pictures.
 constexpr std::size_t kPicturesInStep = 4;
 
 // Free running, time may be this far ahead of a client: less than the watchdog's two seconds. A
@@ -62,9 +62,9 @@ Station::Station(const HostOptions& options, Simulation& simulation, RobotNumber
   if (!options.stereo.empty() || options.stereo_socket)
     pictures_.emplace_back(stereo_pairs(options.seed + number),
                            options.stereo.empty() ? "" : numbered(options.stereo, number + 1),
-                           numbered_socket(options.stereo_socket));
+                           numbered_socket(options.stereo_socket), kPicturesInStep);
   if (options.camera_socket)
-    pictures_.emplace_back(color_pictures(), "", numbered_socket(options.camera_socket));
+    pictures_.emplace_back(color_pictures(), "", numbered_socket(options.camera_socket), 1);
   if (options.terminal)
     terminal_.emplace(numbered(*options.terminal, number + 1));
   log("listening on " + (terminal_ ? terminal_->name() : listener_->name()) +
@@ -141,7 +141,7 @@ void Station::write(bool live) {
   // After the packet, which must not wait for the picture.
   for (PictureFeed& feed : pictures_)
     feed.serve(simulation_.scene(), number_, server().devices().head(), server().cycle(),
-               server().single_step() ? kPicturesInStep : 1);
+               server().single_step());
 }
 
 void Station::end() {
