@@ -20,12 +20,8 @@ constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
 constexpr int kBeginsPerCycle = 8;
 
-/// The bridge is asked again for a stop that it does not confirm.
-constexpr Ticks kAskAgain = 5;
 /// A step after more cycles than this has slept meanwhile.
 constexpr Ticks kLongestStep = 10;
-/// Own stops that may be on the way.
-constexpr std::size_t kMostOwnStops = 16;
 
 /// Cycles for the trend of a level, and the least difference.
 constexpr std::size_t kTrend = 20;
@@ -84,7 +80,7 @@ Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions opti
   for (const Ending& ending : memory.endings)
     remember(ending);
   const Work& work = memory.work;
-  heeds_ = saved_heeds_ = work.heeds;
+  stops_ = Stops(work.heeds);
   if (work.epoch == 0)
     return;
   epoch_ = work.epoch;
@@ -108,9 +104,7 @@ void Executor::archive(Archive& a) {
       "remembered_order", remembered_order_)("ended_order", ended_order_)(
       "next_order", next_order_)("now", now_)("awake", awake_)("epoch", epoch_)("cycle", cycle_)(
       "robot_here", robot_here_)("on_map", on_map_)("recalled", recalled_)("person", person_)(
-      "heeds", heeds_)("saved_heeds", saved_heeds_)("seen_stop", seen_stop_)(
-      "own_stops", own_stops_)("stop_by", stop_by_)("stop_asked", stop_asked_)("odom", odom_)(
-      "withdrawn", withdrawn_)("endings", endings_);
+      "stops", stops_)("odom", odom_)("withdrawn", withdrawn_)("endings", endings_);
   if (a.restores())
     for (auto& [id, entry] : entries_) {
       entry.schema = registry_->share(entry.goal.functor);
@@ -198,7 +192,7 @@ Outputs Executor::step(const Inputs& inputs) {
   for (const ClaimEvent& claim : inputs.claims)
     beliefs_->take(claim, awake_);
   Surroundings around = inputs.around;
-  around.stop_confirmed = !stop_by_ || !inputs.confirms_stops;
+  around.stop_confirmed = stops_.confirmed() || !inputs.confirms_stops;
   const World world{inputs.robot, around, *beliefs_, awake_};
   beliefs_->evaluate_conditions(world);
   if (inputs.behaviors_cycle > 0)
@@ -224,9 +218,7 @@ Outputs Executor::step(const Inputs& inputs) {
                   forest_.behavior_control(), forest_.take_said(), forest_.take_requests(),
                   forest_.take_questions()};
   outputs.updates.work = take_work(!outputs.updates.changed.empty());
-  const Ticks since = now_ - stop_asked_;
-  if (stop_by_ && (since == 0 || (inputs.confirms_stops && since % kAskAgain == 0)))
-    outputs.stop = stop_by_;
+  outputs.stop = stops_.asks(now_, inputs.confirms_stops);
   return outputs;
 }
 
@@ -549,8 +541,7 @@ void Executor::replace() {
     if (!open(stop.status) || !stop.schema->replaces || stop.replaced)
       continue;
     stop.replaced = true;
-    stop_by_ = stop.goal.requester;
-    stop_asked_ = now_;
+    stops_.ask(stop.goal.requester, now_);
     for (auto& [other_id, other] : entries_) {
       const bool earlier =
           std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
@@ -562,39 +553,13 @@ void Executor::replace() {
   }
 }
 
-/// A stop of the bridge ends every goal that drives, as a goal "stop" does, which asks the bridge
-/// for one. Without a memory, a stop from before the start says nothing about the goals.
 void Executor::obey_stop(const Inputs& inputs) {
-  if (inputs.stop != v1::StopId{} && inputs.stop != seen_stop_) {
-    const auto found = std::find(own_stops_.begin(), own_stops_.end(), inputs.stop);
-    const bool own = found != own_stops_.end();
-    // The bridge comes to a later one of our own by itself.
-    const bool overtaken = std::find(found, own_stops_.end(), heeds_) != own_stops_.end();
-    const bool old =
-        (!own && inputs.stop == heeds_) || (inputs.stop_was_before && heeds_ == v1::StopId{});
-    if (!own && !old)
-      end_driving("stopped by " + inputs.stop_source + ": ask anew to have it done");
-    seen_stop_ = inputs.stop;
-    if (!overtaken)
-      heeds_ = inputs.stop;
-    if (!old)
-      stop_by_.reset();
-  }
-  const bool stops = std::any_of(entries_.begin(), entries_.end(), [](const auto& each) {
-    return open(each.second.status) && each.second.schema->replaces;
-  });
-  if (stop_by_ && !stops) {  // never confirmed
-    stop_by_.reset();
-    if (inputs.confirms_stops && seen_stop_ != v1::StopId{})
-      heeds_ = seen_stop_;
-  }
-}
-
-void Executor::heed(const v1::StopId& own) {
-  heeds_ = own;
-  own_stops_.push_back(own);
-  if (own_stops_.size() > kMostOwnStops)
-    own_stops_.pop_front();
+  if (stops_.take(inputs.stop, inputs.stop_was_before))
+    end_driving("stopped by " + inputs.stop_source + ": ask anew to have it done");
+  if (std::none_of(entries_.begin(), entries_.end(), [](const auto& each) {
+        return open(each.second.status) && each.second.schema->replaces;
+      }))
+    stops_.give_up(inputs.confirms_stops);
 }
 
 /// Goals that have been stopped do not go on by themselves.
@@ -751,11 +716,11 @@ std::optional<Work> Executor::take_work(bool changed) {
   changed = forest_.take_changed() || changed;
   const bool set = set_revision_ != beliefs_->set_revision();
   set_revision_ = beliefs_->set_revision();
-  const bool stopped = std::exchange(saved_heeds_, heeds_) != heeds_;
+  const bool stopped = stops_.take_changed();
   if (!options_.remembers_work || !odom_ || !(changed || set || stopped))
     return std::nullopt;
   Work work{epoch_, cycle_, *odom_, now_, awake_, forest_.last_id(), unheard_, lasting_beliefs()};
-  work.heeds = heeds_;
+  work.heeds = stops_.heeds();
   work.placed = on_map_ || was_placed_;
   if (!remembered_order_.empty())
     work.ended = remembered_order_.back();

@@ -17,6 +17,7 @@
 #include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/goal.hpp"
 #include "saphira/intentions/schema.hpp"
+#include "saphira/intentions/stops.hpp"
 #include "saphira/intentions/work.hpp"
 
 namespace saphira::intentions {
@@ -110,9 +111,9 @@ class Executor {
   GoalUpdates take_events(const std::vector<GoalEvent>& events);
 
   /// The id of the stop that a step asked for: goals of afterwards may drive.
-  void heed(const v1::StopId& own);
+  void heed(const v1::StopId& own) { stops_.heed(own); }
   /// The stop that all goals that drive come after.
-  const v1::StopId& heeds() const { return heeds_; }
+  const v1::StopId& heeds() const { return stops_.heeds(); }
 
   /// The robot is gone (no cycles come). Goals wait for it; the next step continues.
   GoalUpdates robot_gone();
@@ -212,12 +213,7 @@ class Executor {
   bool on_map_ = false;  ///< it is known where the robot is on the map
   Ticks recalled_ = 0;   ///< time of the start
   std::string person_;   ///< of the newest inputs
-  v1::StopId heeds_;
-  v1::StopId saved_heeds_;
-  v1::StopId seen_stop_;  ///< the bridge's
-  std::deque<v1::StopId> own_stops_;
-  std::optional<std::string> stop_by_;  ///< requester of a stop that the bridge has not confirmed
-  Ticks stop_asked_ = 0;
+  Stops stops_;
   std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot
   std::vector<GoalId> withdrawn_;
   std::vector<Ending> endings_;
