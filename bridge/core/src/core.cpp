@@ -446,10 +446,12 @@ void Core::tick(double now, const Surroundings& around) {
 
 double Core::due(double now) const {
   double until = now + kCycle;
-  if (flush_at_ > 0.0)
-    until = std::min(until, flush_at_);
-  if (!settings_.lockstep && grant_.role != Role::none)
-    until = std::min(until, expires_at_);
+  if (!settings_.lockstep && in_session()) {
+    if (flush_at_ > 0.0)
+      until = std::min(until, flush_at_);
+    if (grant_.role != Role::none)
+      until = std::min(until, expires_at_);
+  }
   if (may_connect(now) && connection_.state() != State::closed && !connection_.open())
     until = std::min(until, connection_.due());
   if (parser_.pending())
