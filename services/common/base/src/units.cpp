@@ -10,7 +10,7 @@ namespace saphira {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::array<Unit, 16> kUnits{{{"m", "m", 1.0},
+constexpr std::array<Unit, 17> kUnits{{{"m", "m", 1.0},
                                        {"mm", "m", 1e-3},
                                        {"cm", "m", 1e-2},
                                        {"km", "m", 1e3},
@@ -23,6 +23,7 @@ constexpr std::array<Unit, 16> kUnits{{{"m", "m", 1.0},
                                        {"m/s", "m/s", 1.0},
                                        {"mm/s", "m/s", 1e-3},
                                        {"cm/s", "m/s", 1e-2},
+                                       {"km/h", "m/s", 1.0 / 3.6},
                                        {"deg/s", "rad/s", kDegree},
                                        {"rad/s", "rad/s", 1.0},
                                        {"%", "", 1e-2}}};

@@ -211,7 +211,7 @@ TEST(Units, AnotherUnitIsNone) {
 }
 
 TEST(Units, AreNamed) {
-  EXPECT_EQ(unit_names(), "m mm cm km s ms min h deg rad m/s mm/s cm/s deg/s rad/s %");
+  EXPECT_EQ(unit_names(), "m mm cm km s ms min h deg rad m/s mm/s cm/s km/h deg/s rad/s %");
   EXPECT_EQ(find_unit("furlong"), nullptr);
   ASSERT_NE(find_unit("%"), nullptr);
   EXPECT_EQ(find_unit("%")->factor, 1e-2);

@@ -1,6 +1,7 @@
 #include "language/compiler.hpp"
 
 #include "language/goals.hpp"
+#include "saphira/base/units.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -150,8 +151,12 @@ class Compiler {
       if (!options.items.empty())
         definition_.fail(*options.items[0],
                          "expected :unit, :low, :high or :doc" + found(*options.items[0]));
-      if (const Form* const unit = options.option("unit"))
+      if (const Form* const unit = options.option("unit")) {
+        const Unit* const known = find_unit(unit->text);
+        if (known == nullptr || known->name != known->si)
+          definition_.fail(*unit, "expected an SI unit (m, s, rad, m/s or rad/s)" + found(*unit));
         parameter.unit = unit->text;
+      }
       if (const Form* const low = options.option("low"))
         parameter.low = constant_number(*low, -1e9, 1e9, "a number");
       if (const Form* const high = options.option("high"))
