@@ -105,16 +105,6 @@ v1::MotorCommand command_of(const reflector::Motion& motion) {
           .heading = motion.heading};
 }
 
-/// True where the robot is to stay where it is.
-bool stands(const reflector::Motion& motion) {
-  using reflector::Rotation;
-  using reflector::Translation;
-  return (motion.translation == Translation::none ||
-          (motion.translation == Translation::velocity && motion.velocity == 0.0)) &&
-         (motion.rotation != Rotation::velocity || motion.rotation_velocity == 0.0) &&
-         motion.rotation != Rotation::relative_heading;
-}
-
 protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
   protocol::VisionPacket seen;
   for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels.size()); ++i) {
@@ -256,9 +246,8 @@ class BusRobot final : public Robot {
 
   void drive(const reflector::Motion& motion, std::uint64_t cycle) override {
     const std::lock_guard lock(mutex_);
-    if (stopped_ && !stands(motion))
+    if (was_stopped_)
       return;
-    stopped_ = false;
     wish_ = command_of(motion);
     wish_->stamp.epoch = epoch_;
     wish_->stamp.cycle = cycle;
@@ -515,18 +504,19 @@ class BusRobot final : public Robot {
     news_ = kind;
   }
 
-  /// A stop since this program joined the bus. It lets go; the program's commands are dropped until
-  /// one of them stands.
+  /// A stop since this program joined the bus. It lets go; commands are dropped until take_stop().
   void take_stop(Ends& ends, const v1::Grant& grant) {
     const std::string who = notice_.hear(grant);
     if (who.empty())
       return;
-    {
-      const std::lock_guard lock(mutex_);
-      wish_.reset();
-      stopped_ = was_stopped_ = true;
+    if (!is_named(grant.stop_source, source_)) {
+      {
+        const std::lock_guard lock(mutex_);
+        wish_.reset();
+        was_stopped_ = true;
+      }
+      say_("stopped by " + who + ": sfSetVelocity(0) comes before driving again", false);
     }
-    say_("stopped by " + who + ": sfSetVelocity(0) comes before driving again", false);
     v1::MotorCommand release{.stamp = stamp_};
     write(ends.node, ends, release);
   }
@@ -678,7 +668,6 @@ class BusRobot final : public Robot {
   std::uint64_t odom_ = 0;
   std::map<int, reflector::Bucket> buckets_;
   std::optional<v1::MotorCommand> wish_;
-  bool stopped_ = false;      // and has not let go
   bool was_stopped_ = false;  // since take_stop()
   std::vector<Call> calls_;
   std::vector<std::string> told_;

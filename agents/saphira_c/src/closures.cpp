@@ -272,6 +272,8 @@ void Os::evaluate_behaviors() {
   behaviors_said_ = said.output;
   const bool drive = said.output.active && !interrupted;
   if (drive) {
+    if (!behaviors_drive_)
+      let_go();
     motion = {};
     motion.translation = reflector::Translation::velocity;
     motion.velocity = said.output.speed;

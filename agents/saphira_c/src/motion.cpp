@@ -54,6 +54,8 @@ void sfSetVelocity(int vel) {
   if (!ready("sfSetVelocity"))
     return;
   Os& os = Os::get();
+  if (vel == 0 && os.stopped)
+    os.let_go();
   os.motion.translation = reflector::Translation::velocity;
   os.motion.velocity = vel / 1000.0;
   tell_limit("sfSetVelocity", vel, "mm/s", os.parameters.max_velocity * 1000.0);

@@ -1,5 +1,6 @@
 #include "os.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -193,8 +194,7 @@ void Os::reset() {
     task->removed = true;
   for (const auto& closure : closures)
     closure->removed = true;
-  motion = {};
-  position_target.reset();
+  let_go();
   travelled = 0.0;
   max_velocity = 0.0;
   first_ = true;
@@ -226,10 +226,8 @@ void Os::step(const Reflected& now) {
     behaviors_said_ = {};
   }
   take_keys();
-  if (robot && robot->take_stop() && behaviors_drive_) {
-    sfBehaviorControl = 0;
-    say("the behaviors do not drive any more: sfBehaviorControl = 1 lets them drive again", false);
-  }
+  if (robot && robot->take_stop())
+    hear_stop();
   if (robot)
     for (const Vec2& at : robot->pointed_out())
       click(relative(robot_in_odom, Pose{at.x(), at.y(), 0.0}).position());
@@ -237,8 +235,8 @@ void Os::step(const Reflected& now) {
   const std::lock_guard lock(mutex);
   first_ = false;
   new_frame_ = false;
-  const bool drives = motion.translation != reflector::Translation::none ||
-                      motion.rotation != reflector::Rotation::none;
+  const bool drives = !stopped && (motion.translation != reflector::Translation::none ||
+                                   motion.rotation != reflector::Rotation::none);
   if (robot && find(motor_proc) != nullptr && !suspended(motor_proc) && drives) {
     go_on_to_position();
     robot->drive(motion, now.state.cycle);
@@ -250,6 +248,26 @@ void Os::step(const Reflected& now) {
     share(*robot, now.state.cycle);
   }
   changed_.notify_all();
+}
+
+/// Somebody has stopped the robot: the program's motion of before is over.
+void Os::hear_stop() {
+  const std::lock_guard lock(mutex);
+  let_go();
+  stopped = true;
+  const bool has_behaviors =
+      std::any_of(closures.begin(), closures.end(), [](const auto& one) { return !one->removed; });
+  if (sfBehaviorControl != 0 && has_behaviors) {
+    sfBehaviorControl = 0;
+    behaviors_drive_ = false;
+    say("the behaviors do not drive any more: sfBehaviorControl = 1 lets them drive again", false);
+  }
+}
+
+void Os::let_go() {
+  motion = {};
+  position_target.reset();
+  stopped = false;
 }
 
 /// Commands the rest of a way again after a stop on it (by an operator, the guard or a suspended
@@ -301,7 +319,7 @@ bool Os::connect(const std::string& address) {
 
 void Os::stop_robot() {
   const std::lock_guard lock(mutex);
-  motion = {};
+  let_go();
   motion.translation = reflector::Translation::velocity;
   motion.rotation = reflector::Rotation::velocity;
   if (robot_)

@@ -140,7 +140,12 @@ class Os {
   double travelled = 0.0;                 ///< [m]
   std::optional<double> position_target;  ///< [m] on that scale
   double target_heading = 0.0;            ///< [rad] in odom
-  double max_velocity = 0.0;              ///< [m/s] 0: the robot's own
+  /// Somebody has stopped the robot, and neither sfSetVelocity(0) nor sfStopRobot was called since,
+  /// nor have the behaviors begun anew: the motion does not go to the wheels.
+  bool stopped = false;
+  /// No motion, and not stopped any more.
+  void let_go();
+  double max_velocity = 0.0;  ///< [m/s] 0: the robot's own
   void send(protocol::Bytes packet);
   /// Shows a state from another source (the packet functions).
   void reflect(const reflector::State& now, const protocol::RobotParameters& robot);
@@ -152,6 +157,7 @@ class Os {
   void session_began(const std::shared_ptr<Robot>& robot);
   void session_ended();
   void step(const Reflected& now);
+  void hear_stop();
   void go_on_to_position();
   void clamp(const reflector::State& now);
   View shown();

@@ -143,8 +143,8 @@ class Robot {
   virtual std::vector<TaskRequest> share(std::vector<SharedTask>, std::optional<SharedMind>) {
     return {};
   }
-  /// True where somebody has stopped the robot since the last call. Motion commands are dropped
-  /// then until one of them stands: the program lets go.
+  /// True where somebody has stopped the robot since the last call. Until it, motion commands are
+  /// dropped.
   virtual bool take_stop() { return false; }
   /// Asks the bridge to end whatever moves the robot.
   virtual void stop() {}

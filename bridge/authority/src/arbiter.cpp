@@ -4,6 +4,7 @@
 
 #include "saphira/base/cycle.hpp"
 #include "saphira/base/enumerators.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/base/format.hpp"
 
 namespace saphira::authority {
@@ -15,6 +16,7 @@ constexpr std::size_t kMaxWriters = 1024;  // bounds the memory that unknown wri
 constexpr std::size_t kMaxPressed = 64;    // the same for emergency stops
 constexpr double kTick = 1e-9;             // [s] 3 cycles x 0.1 s are not over after 3 cycles
 constexpr double kNever = -1e300;          // [s]
+constexpr double kTriesAgain = 5.0;        // [s] the longest pause of a program between two tries
 
 /// [s] since the cycle that a command answers.
 double age_of(const Command& command, std::uint64_t cycle) {
@@ -75,6 +77,11 @@ void Arbiter::press(const Command& command) {
   if (!latches_.estopped) {
     latches_ = {true, command.source, latches_.wait};
     last_stopper_ = command.source;
+    // Goals that do not hear of it now have to heed it later. The epoch differs over a restart.
+    Fnv1a asker;
+    for (const std::uint8_t byte : command.writer)
+      asker.add(byte);
+    stop_ = {{asker.value(), epoch_ + command.number}, command.source};
   }
   if (pressed_.size() >= kMaxPressed && !pressed_.contains(command.writer))
     pressed_.erase(std::min_element(pressed_.begin(), pressed_.end(), [](auto& a, auto& b) {
@@ -122,6 +129,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     said.stopped = false;
     return release(command, cycle);
   }
+  if (command.role == Role::direct && latches_.estopped && said.newest_at == kNever)
+    began_pressed_ = command.received;
   said.newest_at = command.received;
 
   if (const std::string wrong = stale(command, cycle); !wrong.empty()) {
@@ -271,7 +280,7 @@ std::string Arbiter::reset(const std::string& source, double now) {
   const Player& behaviors = player(Role::behaviors);
   const Player& direct = player(Role::direct);
   const bool rests = behaviors.held && !behaviors.newest.active && fresh(behaviors, now) &&
-                     !(direct.held && direct.newest.active);
+                     !(direct.held && direct.newest.active) && now - began_pressed_ > kTriesAgain;
   if (!rests && latches_.wait == Wait::none)
     latches_.wait = Wait::reset;
   const Player& person = player(Role::teleop);

@@ -155,6 +155,8 @@ void Rules::output(const Output& output) {
     const bool given = grant->grant.role != Role::none && grant->grant.role != Role::estop;
     if (given && !somebody_drives())
       wrong("a grant without a live command of a driver");
+    if (latched_)  // an emergency stop is a stop, too
+      stop_ = grant->grant.stop;
     if (given && silent_)
       wrong("a grant while the link is silent");
   }

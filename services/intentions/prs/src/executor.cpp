@@ -185,10 +185,10 @@ Outputs Executor::step(const Inputs& inputs) {
   }
   check_deadlines(inputs.robot);
   replace();
-  obey_stop(inputs);
   if (!inputs.estop.empty())
     end_driving("emergency stop, pressed by " + quoted(inputs.estop) +
                 ": ask anew once it is released");
+  obey_stop(inputs);
   for (const ClaimEvent& claim : inputs.claims)
     beliefs_->take(claim, awake_);
   Surroundings around = inputs.around;

@@ -96,7 +96,9 @@ struct Grant {
 /// Two states are latched, over connections and, with latches() and restore(), over a restart:
 /// - An emergency stop: nobody drives until it is reset. A driver that was active before the reset
 ///   does not drive after it: a person or a direct driver has to let go first. Autonomy must have
-///   come to rest by itself, as it does when its goals end; otherwise it waits for a hand-back.
+///   come to rest by itself, as it does when its goals end, and no program may have tried to drive
+///   just before; otherwise autonomy waits for a hand-back. The behaviors have to heed an emergency
+///   stop like any other.
 /// - After a person has driven, autonomy waits for a hand-back.
 class Arbiter {
  public:
@@ -141,8 +143,9 @@ class Arbiter {
     a("epoch", epoch_)("deaf_cycle", deaf_cycle_)("deaf_until", deaf_until_)("deaf_why", deaf_why_)(
         "players", players_)("numbers", numbers_)("offers", offers_)("stop", stop_.id)(
         "stop_source", stop_.source)("last_stopper", last_stopper_)("stop_cycle", stop_cycle_)(
-        "latches", latches_)("pressed", pressed_)("person", person_)("quiet_since", quiet_since_)(
-        "quiet_heard", quiet_heard_)("refused", refused_)("refused_count", refused_count_);
+        "latches", latches_)("pressed", pressed_)("began_pressed", began_pressed_)(
+        "person", person_)("quiet_since", quiet_since_)("quiet_heard", quiet_heard_)(
+        "refused", refused_)("refused_count", refused_count_);
   }
 
  private:
@@ -206,6 +209,7 @@ class Arbiter {
     double received = 0.0;
   };
   std::map<WriterId, Press> pressed_;  ///< emergency stops that have not been let go
+  double began_pressed_ = -1e300;      ///< [s] a direct driver began to ask under an emergency stop
   WriterId person_{};                  ///< the person's program that drove last
   double quiet_since_ = 0.0;           ///< since then it reports that it does not drive
   double quiet_heard_ = -1e300;        ///< its newest such report
