@@ -79,7 +79,9 @@ int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
       }
       if (state == Course::State::interrupted) {
         end = "interrupted: " +
-              (driver.drives() ? "the bridge was started again" : describe(*driver.grant()));
+              (driver.drives()
+                   ? "the robot was not heard for a while, or its bridge was started again"
+                   : describe(*driver.grant()));
         break;
       }
       if (state == Course::State::drives && course.left() < nearest - kProgress) {

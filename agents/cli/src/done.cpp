@@ -12,6 +12,7 @@ constexpr double kFarthest = 100.0;            // [m]
 constexpr double kFastest = 5.0;               // [m/s]
 constexpr double kThere = radians(2.0);        // the resolution of the manual's robots
 constexpr double kStands = 0.02;               // [m/s]
+constexpr std::uint64_t kGap = 5;              // cycles, as of a person: see authority::Settings
 constexpr double kDoesNotTurn = radians(3.0);  // [rad/s]
 
 }  // namespace
@@ -57,8 +58,11 @@ v1::MotorCommand command_of(const Move& move) {
 }
 
 Course::State Course::update(bool drives, const v1::Grant& grant, const v1::RobotState& robot) {
-  const std::uint64_t before = driving_.stamp.epoch;
-  interrupted_ = interrupted_ || (before != 0 && (!drives || grant.stamp.epoch != before));
+  const v1::Stamp before = driving_.stamp;
+  if (before.epoch != 0)
+    interrupted_ = interrupted_ || grant.stamp.epoch != before.epoch ||
+                   grant.stamp.cycle > before.cycle + kGap ||
+                   (!drives && move_.kind != Move::Kind::speed);
   if (drives && !interrupted_)
     driving_ = grant;
   if (driving_.stamp.epoch == 0)
@@ -77,7 +81,7 @@ Course::State Course::update(bool drives, const v1::Grant& grant, const v1::Robo
       there = kThere;
       break;
     case Move::Kind::speed:
-      return drives ? State::drives : State::waits;
+      return interrupted_ ? State::interrupted : State::drives;
   }
   if (interrupted_)
     return State::interrupted;

@@ -305,6 +305,27 @@ TEST(Course, AnInterruptedMoveIsNotDone) {
   EXPECT_EQ(restarted.left(), 0.4);
 }
 
+TEST(Course, NothingGoesOnAfterACut) {
+  const auto grant = [](std::uint64_t cycle) {
+    return v1::Grant{.stamp = {.epoch = 7, .cycle = cycle}, .distance_left = 1.0};
+  };
+  for (const Move::Kind kind : {Move::Kind::move, Move::Kind::speed})
+    for (const std::uint64_t gap : {5, 6}) {
+      Course course({kind, "", 1.0});
+      course.update(true, grant(10), {});
+      const Course::State after = course.update(true, grant(10 + gap), {});
+      EXPECT_EQ(after, gap > 5 ? Course::State::interrupted : Course::State::drives) << gap;
+    }
+  Course speed({Move::Kind::speed, "speed", 0.3});
+  EXPECT_EQ(speed.update(false, grant(9), {}), Course::State::waits);
+  EXPECT_EQ(speed.update(true, grant(10), {}), Course::State::drives);
+  EXPECT_EQ(speed.update(false, grant(14), {}), Course::State::drives);
+  EXPECT_EQ(speed.update(true, grant(15), {}), Course::State::drives);
+  EXPECT_EQ(speed.update(false, grant(21), {}), Course::State::interrupted)
+      << "somebody else drives";
+  EXPECT_EQ(speed.update(true, grant(22), {}), Course::State::interrupted);
+}
+
 TEST(Course, AnInterruptedTurnKeepsItsTarget) {
   Course course({Move::Kind::turn, "turn", 1.0});
   v1::RobotState robot;

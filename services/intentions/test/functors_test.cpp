@@ -174,6 +174,19 @@ TEST(FollowTrail, GoesAroundTheSameCornerAndToItsEnd) {
   EXPECT_EQ(find(faces, "radius")->number, 10.0);
 }
 
+TEST(FollowTrail, EndsWhereItSeesNobody) {
+  Bench bench;
+  bench.ask(1, "follow-trail", {});
+  for (int i = 0; i < 29; ++i)
+    bench.step();
+  EXPECT_EQ(bench.status(1).step, "waiting until it sees a person");
+  EXPECT_EQ(bench.status(1).level, 0.0);
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  for (int i = 0; i < 3; ++i)
+    bench.step();
+  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
+}
+
 TEST(FollowTrail, IsAsFastAsThePersonAtTheDistanceAndFasterBeyondIt) {
   const auto speed = [](double away, double leaves) {
     Bench bench;

@@ -22,6 +22,7 @@ constexpr double kFast = 0.05;      // [m] radius of a place to which the robot 
 constexpr double kStands = 10.0;    // [m] radius of a place that it only faces
 constexpr double kPlaced = 0.3;     // [s] since the person was seen: a place, not a guess
 constexpr double kFollowed = 1.0;   // [s] since then
+constexpr Ticks kWaits = 30;        // for the first sight of a person
 constexpr double kInPicture = radians(15.0);  // from straight ahead, of the 30 that cameras see
 
 /// [rad] From the robot, between two places.
@@ -45,7 +46,7 @@ class Follow : public Activity {
     if (self.state() == IntentionState::kInterrupted)
       return;
     const World& world = self.world();
-    auto& [who, trail, went] = now_;
+    auto& [who, trail, went, waits] = now_;
     const std::size_t places = trail.places();
     if (!who)
       if (const std::optional<Value> found =
@@ -54,6 +55,15 @@ class Follow : public Activity {
                                   : std::nullopt))
         if (const Reference* const person = found->reference())
           who = person->id;
+    if (!who) {
+      self.level(0.0);
+      self.say("waiting until it sees a person");
+      if (++waits > kWaits)
+        self.fail(v1::CODE_NONE, world.around.things == nullptr
+                                     ? "the robot has no camera, or nobody looks at its pictures"
+                                     : "no person is to be seen");
+      return;
+    }
     const lps::SeenThing* const thing = who ? seen_thing(world, *who) : nullptr;
     const double unseen = thing == nullptr ? kFollowed + 1.0 : seconds_unseen(world, *thing);
     const bool in_sight = unseen <= kFollowed;
@@ -109,6 +119,7 @@ class Follow : public Activity {
     std::optional<std::uint64_t> who;
     Trail trail;
     Vec2 went{0.0, 0.0};  ///< [m/s] where the person was seen last
+    Ticks waits = 0;      ///< for the first sight of somebody
   };
   Now now_;
 };

@@ -33,8 +33,10 @@ class Course {
   enum class State {
     waits,  ///< its commands do not go to the wheels yet
     drives,
-    done,        ///< sfDonePosition, sfDoneHeading: at the target, and at rest; never of a speed
-    interrupted  ///< over: the bridge does not begin an interrupted motion again
+    done,  ///< sfDonePosition, sfDoneHeading: at the target, and at rest; never of a speed
+    /// Over: a way or turn that the bridge has ended, a speed that did not go to the wheels for
+    /// more than half a second. No robot drives off when a link comes back.
+    interrupted
   };
 
   explicit Course(const Move& move) : move_(move) {}
