@@ -27,7 +27,7 @@ class Visitors : public testing::TestWithParam<const char*> {
   static intentions::GoalStatus to_d(Whole& whole) { return to("D", whole); }
 };
 
-constexpr const char* kTrue = "something, perhaps a person, stands in the way to door 9 (D)";
+constexpr const char* kTrue = "something, perhaps a person, stands ";
 constexpr const char* kIn = "something, perhaps a person or a door's leaf, stands in door 9 (D)";
 constexpr const char* kClosed = "door 9 (D) is closed";
 constexpr const char* kBarred =
