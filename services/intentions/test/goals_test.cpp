@@ -170,7 +170,7 @@ class Desk : public test::LinePlayer {
 };
 
 TEST(Goals, DoAsWritten) {
-  EXPECT_EQ(test::play<Desk>("services/intentions/test/goals.txt"), 47);
+  EXPECT_EQ(test::play<Desk>("services/intentions/test/goals.txt"), 48);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ namespace {
 constexpr Ticks kFindsPlace = 50;
 /// A goal from before a restart that is not heard for so long has been withdrawn.
 constexpr Ticks kUnheard = 6000;
+/// [s] A goal of a program that is not heard waits so long for it: a network is back by then.
+constexpr double kLostEnds = 10.0;
 /// The publishing period of the status of an open goal.
 constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
@@ -183,6 +185,7 @@ Outputs Executor::step(const Inputs& inputs) {
   } else {
     lose_robot(inputs.robot.connected ? inputs.hold : std::string());
   }
+  end_lost();
   check_deadlines(inputs.robot);
   replace();
   if (!inputs.estop.empty())
@@ -253,8 +256,8 @@ void Executor::take_in(const GoalEvent& event) {
              ? std::string("withdrawn")
              : "withdrawn by " + (event.by.empty() ? "its requester" : event.by)) +
             (event.why.empty() ? "" : ": " + event.why));
-  } else if (entry.goal.writer_lost == v1::WRITER_LOST_CANCEL) {
-    end(entry, v1::GOAL_CANCELED, v1::CODE_WRITER_LOST, "the program that asked for it is gone");
+  } else if (entry.goal.writer_lost == v1::WRITER_LOST_CANCEL && !entry.lost) {
+    entry.lost = now_;
   }
 }
 
@@ -267,6 +270,7 @@ void Executor::take_written(const GoalEvent& event) {
     Entry& entry = found->second;
     if (!open(entry.status))
       return;  // an ended goal stays ended: its id is not used again
+    entry.lost.reset();
     if (goal != entry.goal)
       change(entry, event);
     else
@@ -511,6 +515,13 @@ void Executor::pass_changes() {
   }
 }
 
+void Executor::end_lost() {
+  for (auto& [id, entry] : entries_)
+    if (open(entry.status) && entry.lost && seconds(now_ - *entry.lost) >= kLostEnds)
+      end(entry, v1::GOAL_CANCELED, v1::CODE_WRITER_LOST,
+          "the program that asked for it is gone, or was cut off for " + plain(kLostEnds) + " s");
+}
+
 void Executor::check_deadlines(const Robot& robot) {
   for (auto& [id, entry] : entries_) {
     if (!open(entry.status) || entry.goal.deadline <= 0.0)
@@ -592,9 +603,12 @@ bool Executor::approve(const GoalId& id) {
          std::exchange(found->second.unapproved, false);
 }
 
-/// Why the goal waits for a person: it is not approved, or it drives while a person has the robot.
-/// Empty: it does not. A stop and concurrent goals go on beside a person.
+/// Why the goal waits: its program is not heard, it is not approved, or it drives while a person
+/// has the robot. Empty: it does not. A stop and concurrent goals go on beside a person.
 std::string Executor::why_to_wait(const Entry& entry) const {
+  if (entry.lost && drives(entry))
+    return "the program that asked for it is not heard: it goes on when that is, and ends after " +
+           plain(kLostEnds) + " s";
   if (entry.unapproved)
     return "waits for a person's approval: saphira goal approve " + describe(entry.goal.id);
   // After a restart registration is heard some cycles later.
@@ -622,11 +636,12 @@ Executor::Entry* Executor::arbitrate() {
     const std::string why = open(entry.status) ? why_to_wait(entry) : std::string();
     if (why.empty())
       continue;
-    const GoalCode code = entry.unapproved ? v1::CODE_APPROVAL : v1::CODE_NONE;
-    if (entry.status.state == v1::GOAL_WAITING)
-      wait(entry, code, why);
-    else
-      suspend(entry, entry.unapproved ? code : v1::CODE_PREEMPTED, why);
+    const bool waiting = entry.status.state == v1::GOAL_WAITING;
+    const GoalCode code = entry.lost         ? v1::CODE_WRITER_LOST
+                          : entry.unapproved ? v1::CODE_APPROVAL
+                          : waiting          ? v1::CODE_NONE
+                                             : v1::CODE_PREEMPTED;
+    waiting ? wait(entry, code, why) : suspend(entry, code, why);
   }
   Entry* const chosen = best();
   if (chosen == nullptr)

@@ -172,6 +172,7 @@ class Executor {
   void meet_odom(Entry& entry, std::uint64_t odom);
   void place(Entry& entry, const Robot& robot);
   void pass_changes();
+  void end_lost();
   void check_deadlines(const Robot& robot);
   void replace();
   void obey_stop(const Inputs& inputs);

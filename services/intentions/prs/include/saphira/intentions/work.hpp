@@ -33,8 +33,9 @@ struct GoalEntry {
   Ticks ended = 0;
   std::uint32_t node = 0;  ///< root of its tree; 0: not begun
   GoalStatus status;
-  bool before = false;  ///< it was accepted before a restart of the service
-  std::string refusal;  ///< of the newest change, which was rejected; empty: none
+  std::optional<Ticks> lost;  ///< its program, whose end is its end, is not heard since then
+  bool before = false;        ///< it was accepted before a restart of the service
+  std::string refusal;        ///< of the newest change, which was rejected; empty: none
   GoalCode refusal_code = v1::CODE_NONE;
   std::optional<GoalStatus> published;
   Ticks published_at = 0;
@@ -49,8 +50,8 @@ struct GoalEntry {
   void archive(Archive& a) {
     a("goal", goal)("arguments", arguments)("fresh", fresh)("placed", placed)("changed", changed)(
         "replaced", replaced)("unapproved", unapproved)("odom", odom)("order", order)(
-        "accepted", accepted)("ended", ended)("node", node)("status", status)("before", before)(
-        "refusal", refusal)("refusal_code", refusal_code)("published", published)(
+        "accepted", accepted)("ended", ended)("node", node)("status", status)("lost", lost)(
+        "before", before)("refusal", refusal)("refusal_code", refusal_code)("published", published)(
         "published_at", published_at)("levels", levels)("frame", frame)("tree", tree);
   }
 };
