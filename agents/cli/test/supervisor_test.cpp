@@ -66,13 +66,6 @@ TEST_F(SupervisorTest, PrintsEachLineWithItsName) {
   })) << all();
 }
 
-TEST_F(SupervisorTest, GivesTheEnvironment) {
-  ChildSpec child = shell("a", "echo \"$SAPHIRA_TEST_WORD\"; exec sleep 60");
-  child.environment["SAPHIRA_TEST_WORD"] = "hello";
-  Supervisor& supervisor = start({child});
-  EXPECT_TRUE(run_until(supervisor, [&] { return said("a|hello"); })) << all();
-}
-
 TEST_F(SupervisorTest, KillsWhatHangsAndStartsItAgainWithTheReason) {
   // A node's heartbeats, and then none.
   Supervisor& supervisor =
@@ -104,14 +97,6 @@ TEST_F(SupervisorTest, StartsAgainWhatIsKilledAndBacksOff) {
   }
   EXPECT_TRUE(said("|a ended: killed by SIGKILL; started again in 100 ms")) << all();
   EXPECT_TRUE(said("|a ended: killed by SIGKILL; started again in 400 ms")) << all();
-}
-
-TEST_F(SupervisorTest, AnotherChildGoesOnMeanwhile) {
-  Supervisor& supervisor = start({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")});
-  const pid_t other = supervisor.children().at(1).pid;
-  kill(supervisor.children().at(0).pid, SIGKILL);
-  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
-  EXPECT_EQ(supervisor.children().at(1).pid, other);
 }
 
 TEST_F(SupervisorTest, TakesInNewVersionsOneAfterTheOther) {
