@@ -66,6 +66,13 @@ TEST_F(SupervisorTest, PrintsEachLineWithItsName) {
   })) << all();
 }
 
+TEST_F(SupervisorTest, GivesTheEnvironment) {
+  ChildSpec child = shell("a", "echo \"$SAPHIRA_TEST_WORD\"; exec sleep 60");
+  child.environment["SAPHIRA_TEST_WORD"] = "hello";
+  Supervisor& supervisor = start({child});
+  EXPECT_TRUE(run_until(supervisor, [&] { return said("a|hello"); })) << all();
+}
+
 TEST_F(SupervisorTest, KillsWhatHangsAndStartsItAgainWithTheReason) {
   // A node's heartbeats, and then none.
   Supervisor& supervisor =
