@@ -35,6 +35,16 @@ TEST_F(LookingTest, SaysWhyFromTheWheelsToTheGoal) {
   EXPECT_TRUE(no.text.starts_with("It does ")) << no.text;
   EXPECT_EQ(run({"why", "not", "fly"}).code, 2);
 
+  // Without the process that drives the robot stands, until it is resumed.
+  const std::string process = "execute-current-behaviors";
+  EXPECT_EQ(run({"processes", "interrupt", "behaviors", process}).code, 0);
+  EXPECT_TRUE(system.wait_still()) << system.output();
+  const Outcome why = run({"why"});
+  EXPECT_TRUE(why.text.starts_with("The robot stands: " + process + " of behaviors is suspended"))
+      << why.text;
+  EXPECT_EQ(run({"processes", "resume", "behaviors", process}).code, 0);
+  EXPECT_TRUE(system.wait_moving()) << system.output();
+
   system.goals().cancel(goal);
   ASSERT_TRUE(system.wait_still()) << system.output();
   const Outcome stands = run({"why"});
