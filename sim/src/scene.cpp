@@ -190,8 +190,6 @@ void Scene::tick() {
     turn(i);
   for (const auto& robot : robots_)
     robot->tick();
-  if (watch_)
-    watch_();
 }
 
 void Scene::sound(const Ping& ping) {

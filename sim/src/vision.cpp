@@ -151,37 +151,4 @@ std::optional<Blob> see_blob(const Scene& scene, RobotNumber robot, const Camera
               static_cast<int>(best.area), best.last - best.first + 1, best.high - best.low};
 }
 
-std::array<RangeBand, 3> see_bands(const Scene& scene, RobotNumber robot,
-                                   const StereoCamera& camera, Random& random) {
-  const Pose eye = compose(scene.robot(robot).pose_in_world(), camera.pose_in_robot);
-  // Beyond this range the disparity is too small.
-  const double range = camera.baseline / camera.disparity;
-  View view(scene, robot, eye.position(), range);
-  std::array<RangeBand, 3> bands;
-  for (int column = 0; column < camera.columns; ++column) {
-    // Columns of a picture are even in the tangent.
-    const double across = (column + 0.5) / camera.columns * 2.0 - 1.0;
-    const double bearing = -std::atan(across * std::tan(camera.field_of_view / 2.0));
-    const Vec2 direction(std::cos(eye.th + bearing), std::sin(eye.th + bearing));
-    const std::vector<Layer>& layers = view.along(direction);
-    for (std::size_t band = 0; band < bands.size(); ++band) {
-      // Always the same draws, so that one column does not shift the next one's.
-      const bool matched = !random.chance(camera.dropout);
-      const double noise = random.normal();
-      const auto first = std::ranges::find_if(
-          layers, [&](const Layer& layer) { return layer.height > camera.bands[band]; });
-      std::optional<double> measured;
-      if (first != layers.end() && matched) {
-        const double along = first->range * std::cos(bearing);
-        const double steps =
-            std::round(camera.baseline / along / camera.disparity + noise * camera.noise);
-        if (steps >= 1.0)
-          measured = camera.baseline / (steps * camera.disparity);
-      }
-      bands[band].push_back(measured);
-    }
-  }
-  return bands;
-}
-
 }  // namespace saphira::sim

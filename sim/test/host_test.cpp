@@ -37,20 +37,10 @@ using namespace std::chrono_literals;
 using protocol::Bytes;
 
 using test::source;
+using test::wait_until;
 
 // Generous: only a failure takes this long.
 constexpr auto kLimit = 20s;
-
-template <class Condition>
-bool wait_for(const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + kLimit;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end)
-      return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -59,7 +49,7 @@ double now() {
 /// A descriptor of that local socket, when somebody listens.
 int connected(const std::string& path) {
   int fd = -1;
-  EXPECT_TRUE(wait_for([&] { return (fd = connect_local(path)) >= 0; }));
+  EXPECT_TRUE(wait_until([&] { return (fd = connect_local(path)) >= 0; }));
   return fd;
 }
 
@@ -71,7 +61,7 @@ class Client {
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_TRUE(wait_for([&] {
+    EXPECT_TRUE(wait_until([&] {
       return ::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     }));
   }
@@ -161,7 +151,7 @@ class HostTest : public ::testing::Test {
     return log_;
   }
   bool logs(const std::string& text) {
-    return wait_for([&] { return log().find(text) != std::string::npos; });
+    return wait_until([&] { return log().find(text) != std::string::npos; });
   }
   std::vector<TraceRow> trace() const {
     return parse_trace(read_file(options_.trace), options_.trace);
@@ -187,10 +177,10 @@ TEST_F(HostTest, ServesLive) {
     client.send(encode(protocol::Pulse{}));
   }
   // The trace can be read while it grows.
-  EXPECT_TRUE(wait_for([&] { return trace().size() >= 20U; }));
+  EXPECT_TRUE(wait_until([&] { return trace().size() >= 20U; }));
   client.close();
   EXPECT_TRUE(logs("the client has gone"));
-  EXPECT_TRUE(wait_for([&] { return trace().back().velocity == 0.0; }));
+  EXPECT_TRUE(wait_until([&] { return trace().back().velocity == 0.0; }));
   EXPECT_GT(trace().back().pose_in_world.x, 1.6);
   stop();
   EXPECT_FALSE(std::filesystem::exists(*options_.socket));
@@ -206,7 +196,7 @@ TEST_F(HostTest, AStepWhileTimeIsPausedWaitsForAClient) {
   };
   say("{\"do\":\"pause\",\"on\":true}\n{\"do\":\"step\"}\n");
   std::string shown;
-  EXPECT_TRUE(wait_for([&] {
+  EXPECT_TRUE(wait_until([&] {
     char part[4096];
     const ssize_t size = ::recv(viewer, part, sizeof part, MSG_DONTWAIT);
     shown.append(part, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
@@ -215,10 +205,10 @@ TEST_F(HostTest, AStepWhileTimeIsPausedWaitsForAClient) {
   Client client(*options_.socket);
   client.open();
   client.information();
-  EXPECT_TRUE(wait_for([&] { return trace().size() == 1U; }));
+  EXPECT_TRUE(wait_until([&] { return trace().size() == 1U; }));
   say("{\"do\":\"step\"}\n");
   client.information();
-  EXPECT_TRUE(wait_for([&] { return trace().size() == 2U; }));
+  EXPECT_TRUE(wait_until([&] { return trace().size() == 2U; }));
   ::close(viewer);
 }
 
@@ -230,13 +220,13 @@ TEST_F(HostTest, ServesATerminal) {
   ASSERT_TRUE(logs("listening on " + *options_.terminal));
   const auto heart = [this] {
     transport::Link link(transport::parse_address("serial:" + *options_.terminal + "@9600"));
-    EXPECT_TRUE(wait_for([&] {
+    EXPECT_TRUE(wait_until([&] {
       link.advance(now());
       return link.state() == transport::Link::State::open;
     })) << link.trouble();
     protocol::PacketParser parser;
     const auto hear = [&](const auto& wanted) {
-      return wait_for([&] {
+      return wait_until([&] {
         std::vector<std::uint8_t> bytes;
         EXPECT_TRUE(link.read(bytes, now())) << link.trouble();
         parser.feed(bytes);
@@ -302,24 +292,6 @@ TEST_F(HostTest, ACheckPlacesTheRobotsAndOpensNothing) {
   options_.more.clear();
   options_.socket = "/nowhere/robot";
   EXPECT_NO_THROW(check(options_));
-}
-
-TEST_F(HostTest, SingleStepsAndFlushesTheTrace) {
-  options_.step = true;
-  start();
-  Client client(*options_.socket);
-  client.open();
-  client.send(encode(protocol::Velocity{0.3}));
-  for (int i = 0; i < 100; ++i) {
-    client.send(encode(protocol::Step{}));
-    client.information();
-  }
-  stop();
-  const auto rows = trace();
-  ASSERT_GE(rows.size(), 100U);
-  EXPECT_TRUE(rows[0].first);
-  EXPECT_EQ(rows[99].cycle, 100U);
-  EXPECT_EQ(rows.back().velocity, 0.0);  // it was stopped before the end
 }
 
 // Without a tick of time, a false header must still not hold back the step behind it.

@@ -15,14 +15,12 @@ namespace {
 using protocol::RobotParameters;
 
 const char* const kEmpty = "width 100000 height 100000";
-// One wall at x = 2 m, from y = -5 to 5.
-const char* const kWalled = "width 9000 height 9000\n2000 -5000 2000 5000";
 
 /// A robot without another.
 struct Alone {
   explicit Alone(const RobotParameters& parameters = {}, const Pose& start = {},
-                 std::uint64_t seed = 1, const char* text = kEmpty)
-      : world(parse_world(text, "test.wld")),
+                 std::uint64_t seed = 1)
+      : world(parse_world(kEmpty, "test.wld")),
         scene(world),
         robot(scene.add_robot(parameters, start, seed)) {}
   Robot* operator->() const { return &robot; }
@@ -38,10 +36,6 @@ void run(Robot& robot, int ticks) {
 }
 void run(const Alone& alone, int ticks) {
   run(alone.robot, ticks);
-}
-void drive(const Alone& alone, double velocity, int ticks) {
-  alone->set_velocity(velocity);
-  run(alone, ticks);
 }
 void turn_to(const Alone& alone, double heading, int ticks) {
   alone->set_heading(heading);
@@ -70,22 +64,6 @@ TEST(Robot, TurnsByATrapezoid) {
   // 170 degrees at 100 deg/s with both ramps of 1/3 s: 1.7 + 1/3 s.
   const auto done = std::find(speeds.begin() + 10, speeds.end(), 0.0) - speeds.begin();
   EXPECT_NEAR(static_cast<double>(done) * kTick, 2.03, 0.1);
-}
-
-TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
-  RobotParameters parameters;
-  const Alone robot(parameters);
-  turn_to(robot, radians(90.0), 50);
-  robot->set_heading(radians(-90.0));
-  double last = robot->rotation_velocity();
-  EXPECT_GT(last, 1.0);
-  for (int i = 0; i < 400; ++i) {
-    robot->tick();
-    ASSERT_LE(std::abs(robot->rotation_velocity() - last),
-              parameters.rotation_acceleration * kTick + 1e-9);
-    last = robot->rotation_velocity();
-  }
-  EXPECT_NEAR(robot->pose_in_odom().th, radians(-90.0), 0.002);
 }
 
 // The time of the fastest motion straight on or on the spot.
@@ -283,33 +261,6 @@ TEST(Robot, MovesAWayByATrapezoid) {
   EXPECT_NEAR(robot->pose_in_odom().x, 1.0, 0.001);
   EXPECT_DOUBLE_EQ(top, 0.4);
   EXPECT_FALSE(robot->moving());
-  robot->set_max_velocity(0.1);
-  robot->set_acceleration(0.1);
-  robot->set_deceleration(0.1);
-  robot->move_by(-0.5);
-  run(robot, 100);
-  EXPECT_NEAR(robot->velocity(), -0.1, 1e-9);
-  run(robot, 600);
-  EXPECT_NEAR(robot->pose_in_odom().x, 0.5, 0.001);
-  robot->move_by(5.0);
-  run(robot, 50);
-  drive(robot, 0.0, 200);  // another command leaves the mode
-  EXPECT_FALSE(robot->moving());
-  EXPECT_LT(robot->pose_in_odom().x, 0.6);
-}
-
-TEST(Robot, OneSeedOneTrajectory) {
-  RobotParameters parameters;
-  parameters.encode_jitter = 0.01;
-  parameters.angle_jitter = 0.02;
-  const auto trajectory = [&](std::uint64_t seed) {
-    const Alone robot(parameters, {}, seed, kWalled);
-    robot->set_velocity(0.3);
-    turn_to(robot, 2.0, 1000);
-    return robot->pose_in_odom();
-  };
-  EXPECT_EQ(trajectory(5), trajectory(5));
-  EXPECT_NE(trajectory(5), trajectory(6));
 }
 
 }  // namespace

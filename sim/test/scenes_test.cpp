@@ -44,9 +44,9 @@ class Play {
     std::string word;
     std::string sign;
     in >> word >> sign;
-    if (const auto verb = kVerbs().find(word); verb != kVerbs().end() && !is_sign(sign))
+    if (const auto verb = kVerbs().find(word); verb != kVerbs().end() && !test::is_sign(sign))
       return verb->second(*robot_, number(line));
-    if (is_sign(sign))
+    if (test::is_sign(sign))
       return check(line);
     const std::string rest = line.substr(std::min(word.size() + 1, line.size()));
     if (word == "world")
@@ -145,11 +145,6 @@ class Play {
         {"sonar_min_range", &RobotParameters::sonar_min_range}};
     return all;
   }
-  static bool is_sign(const std::string& word) {
-    return word == "==" || word == "~" || word == "<" || word == ">" || word == "<=" ||
-           word == ">=";
-  }
-
   /// The last number of a line.
   static double number(const std::string& line) {
     const std::string last = line.substr(line.rfind(' ') + 1);
@@ -166,10 +161,6 @@ class Play {
     if (!scene_) {
       world_ = parse_world(text_, "scene.wld");
       scene_ = std::make_unique<Scene>(world_);
-      scene_->set_watch([this] {
-        for (const auto& watch : watches_)
-          watch->tick();
-      });
     }
     return *scene_;
   }
@@ -181,6 +172,8 @@ class Play {
   void run(long ticks) {
     for (; ticks > 0 && testing::Test::HasFailure() == failed_; --ticks) {
       scene().tick();
+      for (const auto& watch : watches_)
+        watch->tick();
       for (const std::string& fact : always_)
         check(fact);
     }
@@ -198,21 +191,8 @@ class Play {
   }
 
   void check(const std::string& line) {
-    std::istringstream in(line);
-    std::string name;
-    std::string sign;
-    std::string more;
-    double wanted = 0.0;
-    double tolerance = 0.0;
-    in >> name >> sign >> wanted >> more >> tolerance;
-    const double is = fact(name);
-    EXPECT_TRUE(sign == "~"    ? std::abs(is - wanted) <= tolerance
-                : sign == "==" ? is == wanted
-                : sign == "<"  ? is < wanted
-                : sign == ">"  ? is > wanted
-                : sign == "<=" ? is <= wanted
-                               : is >= wanted)
-        << line << ", and it is " << is << " at tick " << scene().ticks();
+    SCOPED_TRACE("tick " + std::to_string(scene().ticks()));
+    test::expect_compared(line, fact(line.substr(0, line.find(' '))));
   }
   double fact(const std::string& name) {
     if (const auto known = kFacts().find(name); known != kFacts().end())

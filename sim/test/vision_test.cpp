@@ -65,53 +65,5 @@ TEST(Blobs, TheLargestCounts) {
   EXPECT_NEAR(blob->x, degrees(std::atan2(0.5, 2.0)) * 3.0, 2.0);
 }
 
-TEST(Bands, ShowAPersonAtThreeHeights) {
-  WorldScene scene(
-      world("person ann 8000 5000 0 0 0 19000 20000 0 20000 20000 12000 0 12000 20000"));
-  scene.add_robot({}, {5.0, 5.0, 0.0}, 1);
-  StereoCamera camera;
-  camera.noise = camera.dropout = 0.0;
-  Random random(1);
-  const auto bands = see_bands(scene, 0, camera, random);
-  int person = 0;
-  for (const RangeBand& band : bands) {
-    ASSERT_EQ(band.size(), 80U);
-    ASSERT_TRUE(band[40]);
-    EXPECT_NEAR(*band[40], 2.75, 0.06);  // a step of disparity is b d / (b/r)^2
-    ASSERT_TRUE(band[5]);
-    EXPECT_NEAR(*band[5], 7.0, 0.4);  // the wall
-    for (const auto& range : band)
-      person += range && *range < 3.5 ? 1 : 0;
-  }
-  // 0.5 m at 3 m, of 80 columns over 2 tan 30: in three bands.
-  EXPECT_NEAR(person, 3.0 * 80.0 * (0.5 / 2.96) / (2.0 * std::tan(radians(30.0))), 6.0);
-}
-
-TEST(Bands, LowThingsAreBelowThemAndMatchesFail) {
-  WorldScene scene(world("post bin 7000 5000 300 tall 900 10000 0 10000 20000"));
-  scene.add_robot({}, {5.0, 5.0, 0.0}, 1);
-  StereoCamera camera;
-  camera.dropout = 0.2;
-  Random random(1);
-  int none = 0;
-  double squares = 0.0;
-  int count = 0;
-  for (int i = 0; i < 100; ++i)
-    for (const RangeBand& band : see_bands(scene, 0, camera, random))
-      for (const auto& range : band) {
-        none += range ? 0 : 1;
-        if (range) {
-          EXPECT_GT(*range, 4.0);
-          squares += (*range - 5.0) * (*range - 5.0);
-          ++count;
-        }
-      }
-  EXPECT_NEAR(none / (100.0 * 240.0), 0.2, 0.02);
-  // Noise of a quarter step, and the rounding to steps of r^2 d / b.
-  const double step = 25.0 * camera.disparity / camera.baseline;
-  EXPECT_NEAR(std::sqrt(squares / count), step * std::hypot(0.25, std::sqrt(1.0 / 12.0)),
-              0.5 * step);
-}
-
 }  // namespace
 }  // namespace saphira::sim

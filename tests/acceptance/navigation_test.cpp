@@ -66,25 +66,5 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
   EXPECT_GT(truth.pose_in_world.y, 8.0);
 }
 
-// Wanted contact, with the guard on: the robot touches the wall, slowly.
-TEST(NavigationAcceptance, BumpAndGoBumps) {
-  Office system;
-  // To the corridor's wall, 0.8 m away.
-  const v1::GoalId turn = system.ask(goal("turn_to", {bus::number("heading", 1.57)}));
-  system.permit(200);
-  ASSERT_TRUE(system.wait_end(turn)) << system.output();
-  const v1::GoalId id = system.ask(goal("bump-and-go", {bus::number("bumps", 1.0)}));
-  system.permit(800);
-  const std::optional<v1::GoalStatus> status = system.wait_end(id);
-  ASSERT_TRUE(status) << system.output();
-  EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
-  EXPECT_EQ(status->reason, "ran into 1 things");
-  const std::vector<sim::TraceRow> rows = sim::parse_trace(system.end(), "trace.csv");
-  const auto touch = std::find_if(rows.begin(), rows.end(),
-                                  [](const sim::TraceRow& row) { return row.contacts > 0; });
-  ASSERT_TRUE(touch != rows.end() && touch != rows.begin()) << "it touched nothing";
-  EXPECT_LE(std::prev(touch)->velocity, 0.12);
-}
-
 }  // namespace
 }  // namespace saphira::test

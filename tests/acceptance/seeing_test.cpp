@@ -1,7 +1,6 @@
 // A person who walks through a world is seen in the pictures of its cameras and followed, over the
 // bus and in lockstep: simulator, bridge, vision, perception, registration, behaviors, intentions.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -62,32 +61,6 @@ TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
     return std::abs(one.second) > radians(5.0);
   })) << "the head kept still";
   EXPECT_EQ(first, run());
-}
-
-// The deployment's comment holds.
-class SeeingDeployment : public testing::Test {
- protected:
-  std::vector<std::string> saphira(std::vector<std::string> words) const {
-    words.insert(words.begin(), {"saphira", "--robot", robot_});
-    return words;
-  }
-
-  TempDir folder_;
-  std::string robot_ = "seeing-" + std::to_string(getpid());
-  Process up_{saphira({"up", "seeing", "--set", "port=0"}), folder_.path("up")};
-};
-
-TEST_F(SeeingDeployment, FindsTheColourThatItsVisionSystemWasTold) {
-  Process search(saphira({"goal", "blob-search"}), folder_.path("search"));
-  EXPECT_EQ(search.wait(std::chrono::minutes(2)), 0) << search.output() << up_.output();
-  EXPECT_NE(search.output().find("at the colour of channel a"), std::string::npos)
-      << search.output();
-}
-
-TEST_F(SeeingDeployment, ItsPersonIsFollowed) {
-  Process follow(saphira({"goal", "follow-person", "seconds=4"}), folder_.path("follow"));
-  EXPECT_EQ(follow.wait(std::chrono::minutes(2)), 0) << follow.output() << up_.output();
-  EXPECT_NE(follow.output().find("followed for 4 s"), std::string::npos) << follow.output();
 }
 
 }  // namespace

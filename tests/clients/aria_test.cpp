@@ -315,14 +315,5 @@ TEST(AriaAgain, FindsAnOpenRobot) {
   EXPECT_GE(client.sips(), 9);
 }
 
-// Its bytes, as observed on the wire.
-TEST(AriaAgain, TheOpeningByteForByte) {
-  EXPECT_EQ(packet(Wire{0}), (Wire{0xFA, 0xFB, 3, 0, 0, 0}));
-  EXPECT_EQ(packet(Wire{1}), (Wire{0xFA, 0xFB, 3, 1, 0, 1}));
-  EXPECT_EQ(packet(1, 1), (Wire{0xFA, 0xFB, 6, 1, 0x3B, 1, 0, 2, 0x3B}));
-  EXPECT_EQ(packet(18, 1), (Wire{0xFA, 0xFB, 6, 18, 0x3B, 1, 0, 0x13, 0x3B}));
-  EXPECT_EQ(packet(12, -90), (Wire{0xFA, 0xFB, 6, 12, 0x1B, 90, 0, 0x66, 0x1B}));
-}
-
 }  // namespace
 }  // namespace saphira::test

@@ -142,11 +142,19 @@ void Drive::begin(const DriveOptions& options) {
   });
 }
 
+const sim::ContactWatch& Drive::watch() {
+  if (!watch_)
+    watch_.emplace(scene_, robot_->number(), parameters_);
+  return *watch_;
+}
+
 const Seen& Drive::advance() {
   ++seen_.cycle;
   seen_.readings.clear();
   for (int tick = 0; tick < 10; ++tick) {
     scene_.tick();
+    if (watch_)
+      watch_->tick();
     if (const auto echo = sonars_.tick(robot_->pose_in_world()))
       seen_.readings.push_back({echo->number, echo->range.value_or(5.0), echo->range.has_value()});
   }

@@ -15,6 +15,7 @@
 #include "saphira/reflector/sweep.hpp"
 #include "saphira/registration/core.hpp"
 #include "saphira/runtime/composition.hpp"
+#include "saphira/sim/contacts.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
@@ -118,6 +119,8 @@ class Drive {
   const authority::Guarded& guarded() const { return guarded_; }
   sim::Scene& scene() { return scene_; }
   sim::Robot& robot() { return *robot_; }
+  /// Of the contacts of the robot, from the first call on.
+  const sim::ContactWatch& watch();
   int contacts() const;
 
  private:
@@ -132,6 +135,7 @@ class Drive {
   sim::World world_;
   sim::Scene scene_;
   sim::Robot* robot_;
+  std::optional<sim::ContactWatch> watch_;
   sim::Sonars sonars_;
   Pose start_;
   std::vector<lps::SonarMount> mounts_;

@@ -215,20 +215,6 @@ TEST(Navigation, ItSaysHowFarItHasCome) {
     EXPECT_GE(levels[i + 10], levels[i] - 0.05) << i;
 }
 
-TEST(Ways, AreDrivenToATenthOfThemselves) {
-  for (const double way : {0.1, 0.2, 0.3, 0.5, 1.0}) {
-    Whole whole(office());
-    whole.advance();
-    const Pose before = whole.drive().seen().pose_in_odom;
-    const GoalStatus status =
-        whole.achieve("go_to", {saphira::point("position", {way, 0.0, 0.0}, Frame::robot)}, 600);
-    EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
-    const Pose after = whole.drive().seen().pose_in_odom;
-    EXPECT_NEAR((after.position() - before.position()).norm(), way, std::max(0.02, 0.1 * way))
-        << way;
-  }
-}
-
 TEST(Ways, AreDrivenAtASpeedToATenthOfThemselves) {
   for (const auto& [speed, way] :
        {std::pair{-0.1, 0.1}, {-0.1, 0.254}, {-0.15, 1.0}, {0.3, 0.2}, {0.4, 1.0}}) {

@@ -8,13 +8,9 @@
 
 namespace saphira::test {
 
-enum class Stereo {
-  bands,    ///< ranges from a stereo system: no pictures, a hundredth of the time
-  pictures  ///< rendered, with a census of each pair
-};
-
 /// Vision by saphira-vision with the robot's cameras (WholeOptions::sees): people by stereo, and
-/// red, green and blue by the Fast Track.
-std::function<std::vector<lps::SeenThing>(Drive&)> vision_eyes(Stereo stereo);
+/// red, green and blue by the Fast Track. Without `people` no pictures are made, which takes a
+/// hundredth of the time.
+std::function<std::vector<lps::SeenThing>(Drive&)> vision_eyes(bool people = true);
 
 }  // namespace saphira::test

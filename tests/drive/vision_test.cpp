@@ -41,10 +41,10 @@ bool visible(Drive& drive, const Vec2& at) {
 }
 
 // Drives round those points, or stands.
-Count watch(Stereo stereo, const std::string& world, const std::optional<Pose>& start,
+Count watch(const std::string& world, const std::optional<Pose>& start,
             const std::vector<Vec2>& points, int cycles) {
   Drive drive({.world = world, .start_in_world = start});
-  const auto eyes = vision_eyes(stereo);
+  const auto eyes = vision_eyes();
   Count count;
   std::size_t next = 0;
   int since = 0;
@@ -97,7 +97,7 @@ const std::vector<Vec2> kFloor{
     {18.5, 25.0}, {12.0, 25.0}, {20.0, 25.0}, {17.5, 16.0}, {17.5, 25.0}};
 
 TEST(VisionEyes, SeeNobodyWhereNobodyIs) {
-  const Count count = watch(Stereo::pictures, "office-floor", std::nullopt, kFloor, 300);
+  const Count count = watch("office-floor", std::nullopt, kFloor, 300);
   EXPECT_EQ(count.reported, 0);
 }
 
@@ -109,12 +109,10 @@ TEST(VisionEyes, SeePeopleWalk) {
                   "person ann 17500 25400 walk 14500 25400 700 walk 14500 24700 700 "
                   "walk 18500 24700 700 walk 18500 25400 700 repeat\n"
                   "person bob 17100 21500 walk 17100 25900 800 walk 17100 21500 800 wait 1 repeat");
-  const Count count = watch(Stereo::pictures, world, Pose{13.0, 25.0, 0.0}, {}, 300);
+  const Count count = watch(world, Pose{13.0, 25.0, 0.0}, {}, 300);
   EXPECT_GT(count.visible, 200);
   EXPECT_GT(count.right, 0.98 * count.reported);
   EXPECT_GT(count.found, 0.85 * count.visible);
-  const Count bands = watch(Stereo::bands, world, Pose{13.0, 25.0, 0.0}, {}, 300);
-  EXPECT_GT(bands.found, 0.85 * bands.visible);  // and a piece of wall, which continues above
 }
 
 // Paper 4.4: the head scans, and stays on the person while the robot turns and comes near.
@@ -124,7 +122,7 @@ TEST(VisionEyes, AHeadFindsAPersonBehindTheRobotAndStaysOnThem) {
   options.drive.robot = "pioneer-head";
   options.drive.start_in_world = Pose{17.5, 14.0, radians(60.0)};
   options.map = "office-floor";
-  options.sees = vision_eyes(Stereo::pictures);
+  options.sees = vision_eyes();
   Whole whole(options);
   const auto goal = whole.ask("attend-person");
   const auto seen = [&] {
@@ -168,7 +166,7 @@ TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
     options.drive.guard = true;
     options.drive.seed = static_cast<std::uint64_t>(wait);
     options.map = "small-office";
-    options.sees = vision_eyes(Stereo::pictures);
+    options.sees = vision_eyes();
     Whole whole(options);
     for (int cycle = 0; cycle < wait; ++cycle)
       whole.advance();
@@ -191,7 +189,7 @@ TEST(VisionEyes, APersonWhoWalksAwayAroundACornerIsFollowed) {
     options.drive.start_in_world = Pose{17.5, 14.0, radians(-90.0)};
     options.drive.guard = true;
     options.map = "office-floor";
-    options.sees = vision_eyes(Stereo::pictures);
+    options.sees = vision_eyes();
     Whole whole(options);
     const auto goal = whole.ask("follow-person");
     const auto distance = [&] {
@@ -210,7 +208,7 @@ TEST(VisionEyes, AColorIsSearchedForAndApproached) {
   options.drive.world = office_with("can", "post can 17800 10500 80 color red tall 300");
   options.drive.start_in_world = Pose{17.5, 14.0, radians(90.0)};
   options.map = "office-floor";
-  options.sees = vision_eyes(Stereo::bands);
+  options.sees = vision_eyes(false);
   Whole whole(options);
   const auto status = whole.achieve("blob-search", {saphira::text("channel", "a")}, 1800);
   EXPECT_EQ(status.state, v1::GOAL_SUCCEEDED) << status.reason;
@@ -226,7 +224,7 @@ TEST(VisionEyes, SomethingOnTheWayToAColorIsPassed) {
         "can", "post can 17800 10500 80 color red tall 300\npost bin 17600 12000 100 tall 200");
     options.drive.start_in_world = Pose{17.5, 14.0, radians(-90.0)};
     options.map = "office-floor";
-    options.sees = vision_eyes(Stereo::bands);
+    options.sees = vision_eyes(false);
     Whole whole(options);
     const auto status =
         whole.achieve("blob-search",

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "drive/whole.hpp"
-#include "saphira/sim/contacts.hpp"
 
 namespace saphira::test {
 namespace {
@@ -106,9 +105,7 @@ TEST_P(Visitors, AmongPeopleWhoWalkMostErrandsSucceed) {
   for (const char* const place : {"A", "B", "C", "D"})
     for (const std::uint64_t seed : {1, 2, 3, 4}) {
       Whole whole(options("visitors", seed));
-      sim::ContactWatch watch(whole.drive().scene(), whole.drive().robot().number(),
-                              whole.drive().parameters());
-      whole.drive().scene().set_watch([&watch] { watch.tick(); });
+      const sim::ContactWatch& watch = whole.drive().watch();
       whole.advance_until([] { return false; }, 37 * (static_cast<int>(seed) - 1));
       succeeded += to(place, whole).state == v1::GOAL_SUCCEEDED ? 1 : 0;
       EXPECT_GT(watch.closest_person(), 0.0) << place << seed;

@@ -1,6 +1,5 @@
 // The command line as a person uses it, with a scripted node in place of the services.
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <signal.h>
@@ -14,8 +13,6 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "cli_fixture.hpp"
@@ -126,11 +123,10 @@ class Scripted {
 
 class CliTest : public test::CliFixture {
  protected:
-  /// `saphira drive` in a terminal of its own: its process, and below 0 where there is none.
-  /// terminal, name: what forkpty tells of it.
-  pid_t drive(int& terminal, char* name = nullptr) const {
+  /// `saphira drive` in that terminal of its own: its process, and below 0 where there is none.
+  pid_t drive(int& terminal) const {
     winsize size{24, 100, 0, 0};
-    const pid_t pid = forkpty(&terminal, name, nullptr, &size);
+    const pid_t pid = forkpty(&terminal, nullptr, nullptr, &size);
     if (pid == 0) {
       const std::string program = test::program("saphira");
       execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
@@ -249,89 +245,6 @@ TEST_F(CliTest, StatusShowsProcessesTheGrantAndWhatIsMissing) {
   expect({"status"}, 0,
          {"bridge", "running", std::to_string(getpid()), "drive: nobody drives: nobody asked",
           "trouble: behaviors and intentions are not heard"});
-}
-
-TEST_F(CliTest, WatchShowsWhoIsLost) {
-  const std::string file = folder_.path("watch");
-  test::Process watch(command({"status", "--watch"}), file);
-  // A killed process ends without a message.
-  const pid_t child = fork();
-  if (child == 0) {
-    // A fresh program: DDS does not survive a fork.
-    const std::string program = test::program("saphira-behaviors");
-    execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
-          test::domain().c_str(), "--log-level", "error", static_cast<char*>(nullptr));
-    _exit(127);
-  }
-  EXPECT_TRUE(test::wait_until([&] { return has(watch.output(), "behaviors  "); }))
-      << watch.output();
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
-  EXPECT_TRUE(test::wait_until([&] { return has(watch.output(), " lost "); })) << watch.output();
-  watch.signal(SIGINT);
-  EXPECT_EQ(watch.wait(), 0);
-}
-
-TEST_F(CliTest, StatusGoalAndMapSayThatTwoDeploymentsHaveTheRobot) {
-  const Scripted scripted(robot_);
-  std::optional<test::Process> second;
-  second.emplace(
-      std::vector<std::string>{"saphira-bridge", "--robot", robot_, "--domain", test::domain(),
-                               "--robot-port", "unix:" + folder_.path("none"), "--robots",
-                               test::source("config/robots")},
-      folder_.path("second"));
-  ASSERT_TRUE(test::wait_until([&] { return has(second->output(), "another bridge"); }))
-      << second->output();
-  const std::string expected =
-      "two deployments have this robot; a second time there are: bridge "
-      "(waits, process " +
-      std::to_string(second->pid()) + " at ";
-  std::string status;
-  EXPECT_TRUE(test::wait_until([&] { return has(status = run({"status"}).text, expected); }))
-      << status;
-  test::Process map(command({"map", "list"}), folder_.path("map"));
-  test::Process goal(command({"goal", "drive", "0.2"}), folder_.path("goal"));
-  EXPECT_TRUE(test::wait_until([&] { return has(goal.output(), expected); })) << goal.output();
-  map.wait();
-  EXPECT_TRUE(has(map.output(), expected)) << map.output();
-  second.reset();
-  EXPECT_TRUE(test::wait_until([&] { return has(goal.output(), "one deployment"); }))
-      << goal.output();
-}
-
-TEST_F(CliTest, EchoPrintsSamplesAsJsonLines) {
-  const Scripted scripted(robot_);
-  const Outcome outcome = run({"echo", "robot/state", "-n", "2"});
-  EXPECT_EQ(outcome.code, 0);
-  std::istringstream lines(outcome.text);
-  std::vector<std::uint64_t> cycles;
-  for (std::string line; std::getline(lines, line);) {
-    const auto json = nlohmann::json::parse(line);
-    EXPECT_EQ(json.at("stamp").at("epoch"), 7);
-    EXPECT_DOUBLE_EQ(json.at("battery"), 12.5);
-    cycles.push_back(json.at("stamp").at("cycle"));
-  }
-  ASSERT_EQ(cycles.size(), 2U);
-  EXPECT_LT(cycles[0], cycles[1]);
-}
-
-TEST_F(CliTest, ListShowsEndpointsAndMismatches) {
-  const Scripted scripted(robot_);
-  Outcome outcome = run({"list"});
-  EXPECT_EQ(outcome.code, 0) << outcome.text;
-  EXPECT_TRUE(has(outcome.text, "robot/state  saphira::v1::RobotState  (cyclic)\n  writer  bridge"))
-      << outcome.text;
-  EXPECT_TRUE(has(outcome.text, "reliable transient_local")) << outcome.text;
-
-  // A user who expects lockstep requires more than a live bridge offers.
-  bus::NodeOptions strict = scripted.options();
-  strict.name = "strict";
-  strict.lockstep = true;
-  bus::Node node(strict);
-  const auto reader = node.reader(topics::kRobotState);
-  outcome = run({"list"});
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(has(outcome.text, "MISMATCH on robot/state")) << outcome.text;
 }
 
 TEST_F(CliTest, LogShowsWhatAProgramSays) {
@@ -499,43 +412,6 @@ TEST_F(CliTest, DriveIsADeadMan) {
   reader.join();
   close(terminal);
   EXPECT_TRUE(has(drawn, "12.5 V")) << drawn;
-}
-
-// A frozen ssh, or Ctrl-S: the terminal takes no output, and the commands are still sent.
-TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
-  Scripted scripted(robot_);
-  int terminal = -1;
-  std::array<char, 256> name{};
-  const pid_t pid = drive(terminal, name.data());
-  ASSERT_GE(pid, 0);
-  std::string drawn;
-  std::array<char, 4096> buffer{};
-  while (!has(drawn, "12.5 V")) {
-    const ssize_t n = read(terminal, buffer.data(), buffer.size());
-    ASSERT_GT(n, 0);
-    drawn.append(buffer.data(), static_cast<std::size_t>(n));
-  }
-  const int frozen = open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  ASSERT_GE(frozen, 0);
-  ASSERT_EQ(tcflow(frozen, TCOOFF), 0);
-  EXPECT_TRUE(test::wait_until([&] {
-    const char key = 'i';
-    EXPECT_EQ(::write(terminal, &key, 1), 1);
-    std::this_thread::sleep_for(milliseconds(50));
-    return scripted.newest().active && scripted.newest().velocity > 0.1;
-  }));
-  // And when the keys stop as well, the robot is released.
-  EXPECT_TRUE(test::wait_until([&] { return !scripted.newest().active; }));
-  const std::uint64_t released = scripted.newest().number;
-  EXPECT_TRUE(test::wait_until([&] { return scripted.newest().number > released + 10; }))
-      << "it goes on saying that it does not drive";
-  const char quit = 'q';
-  EXPECT_EQ(::write(terminal, &quit, 1), 1);
-  int status = 0;
-  EXPECT_EQ(waitpid(pid, &status, 0), pid);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  close(frozen);
-  close(terminal);
 }
 
 TEST_F(CliTest, AnEmergencyStopNeedsNoRoomOnTheDisk) {

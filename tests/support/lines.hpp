@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <exception>
 #include <functional>
 #include <map>
@@ -97,9 +98,33 @@ int play(const std::string& file, char comment = '#',
   return cases;
 }
 
-/// A player of two kinds of lines: an event, "verb rest", and a fact, "name: value", whose present
-/// value must be equal to the written one. "3 times: a & b" repeats its parts, up to the first
-/// failure.
+/// True for the sign of a comparison.
+inline bool is_sign(const std::string& word) {
+  return word == "==" || word == "~" || word == "<" || word == ">" || word == "<=" || word == ">=";
+}
+
+/// Expects of a value what the line says: "NAME == NUMBER", likewise <, >, <= and >=, or "NAME ~
+/// NUMBER +- TOLERANCE".
+inline void expect_compared(const std::string& line, double is) {
+  std::istringstream in(line);
+  std::string name;
+  std::string sign;
+  std::string more;
+  double wanted = 0.0;
+  double tolerance = 0.0;
+  in >> name >> sign >> wanted >> more >> tolerance;
+  EXPECT_TRUE(sign == "~"    ? std::abs(is - wanted) <= tolerance
+              : sign == "==" ? is == wanted
+              : sign == "<"  ? is < wanted
+              : sign == ">"  ? is > wanted
+              : sign == "<=" ? is <= wanted
+                             : is >= wanted)
+      << line << ", and it is " << is;
+}
+
+/// A player of three kinds of lines: an event, "verb rest"; a fact, "name: value", whose present
+/// value must be equal to the written one; and a comparison of a value (expect_compared). "3 times:
+/// a & b" repeats its parts, up to the first failure.
 class LinePlayer {
  public:
   void take(const std::string& line) {
@@ -119,6 +144,7 @@ class LinePlayer {
  protected:
   using Events = std::map<std::string, std::function<void(std::istringstream&)>>;
   using Facts = std::map<std::string, std::function<std::string()>>;
+  using Values = std::map<std::string, std::function<double()>>;
 
   template <class T>
   static T read(std::istringstream& in) {
@@ -156,6 +182,7 @@ class LinePlayer {
 
   Events events_;
   Facts facts_;
+  Values values_;
 
  private:
   void take_one(const std::string& line) {
@@ -166,7 +193,13 @@ class LinePlayer {
       return;
     }
     std::istringstream in(line);
-    const auto event = events_.find(read<std::string>(in));
+    const auto name = read<std::string>(in);
+    std::string sign;
+    if (const auto value = values_.find(name);
+        value != values_.end() && std::istringstream(line.substr(name.size())) >> sign &&
+        is_sign(sign))
+      return expect_compared(line, value->second());
+    const auto event = events_.find(name);
     if (event == events_.end())
       throw std::invalid_argument("not understood");
     event->second(in);

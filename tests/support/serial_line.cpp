@@ -86,7 +86,7 @@ bool SerialLine::take(int fd, int direction) {
   const ssize_t n = ::read(fd, buffer.data(), buffer.size());
   if (n <= 0)
     return n < 0 && (errno == EAGAIN || errno == EINTR);
-  if (cut_[direction])
+  if (cut_)
     return true;
   if (d.waiting.empty())
     d.due = Clock::now() + byte_;
@@ -103,7 +103,7 @@ bool SerialLine::give(int fd, int direction) {
     d.waiting.pop_front();
     d.due += byte_;
   }
-  if (out.empty() || fd < 0 || cut_[direction])
+  if (out.empty() || fd < 0 || cut_)
     return true;
   bytes_[direction] += out.size();
   // Bytes that the other end does not take are lost, as in an unread receiver.

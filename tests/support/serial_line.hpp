@@ -24,9 +24,7 @@ class SerialLine {
   /// True where the robot is switched on. Bytes sent before that are lost, perhaps half a packet.
   bool has_robot();
   /// The cable out of its socket: no byte passes either way, without a signal to either side.
-  void cut(bool out) { cut_[0] = cut_[1] = out; }
-  /// Only the robot's bytes are lost.
-  void cut_from_robot(bool out) { cut_[1] = out; }
+  void cut(bool out) { cut_ = out; }
 
   /// Bytes that went through, to and from the robot.
   std::uint64_t to_robot() const { return bytes_[0]; }
@@ -53,7 +51,7 @@ class SerialLine {
   bool listened_ = false;  ///< the device is open
   int robot_ = -1;
   Direction directions_[2];  ///< to the robot, from it
-  std::atomic<bool> cut_[2]{false, false};
+  std::atomic<bool> cut_{false};
   std::atomic<std::uint64_t> bytes_[2]{0, 0};
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -106,14 +106,6 @@ TEST_F(SupervisorTest, StartsAgainWhatIsKilledAndBacksOff) {
   EXPECT_TRUE(said("|a ended: killed by SIGKILL; started again in 400 ms")) << all();
 }
 
-TEST_F(SupervisorTest, AnotherChildGoesOnMeanwhile) {
-  Supervisor& supervisor = start({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")});
-  const pid_t other = supervisor.children().at(1).pid;
-  kill(supervisor.children().at(0).pid, SIGKILL);
-  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
-  EXPECT_EQ(supervisor.children().at(1).pid, other);
-}
-
 TEST_F(SupervisorTest, TakesInNewVersionsOneAfterTheOther) {
   const test::TempDir folder;
   const auto write = [&](const std::string& name, const std::string& version) {

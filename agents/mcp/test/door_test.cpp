@@ -191,18 +191,6 @@ std::string value_of(const std::string& answer, const std::string& header) {
              : answer.substr(at + header.size(), answer.find('\r', at) - at - header.size());
 }
 
-// Without intentions the first list comes after 3 s, also where the input has ended.
-TEST(McpDoor, WithoutIntentionsTheListHasTheFixedTools) {
-  System system;
-  Process server(
-      {"/bin/sh", "-c",
-       R"(echo '{"jsonrpc":"2.0","id":1,"method":"tools/list"}' | )" + program("saphira-mcp")},
-      system.folder().path("piped.out"), {{"SAPHIRA_ROBOT", system.robot()}});
-  EXPECT_EQ(server.wait(), 0);
-  EXPECT_NE(server.output().find("\"robot_status\""), std::string::npos) << server.output();
-  EXPECT_EQ(server.output().find("\"go_to\""), std::string::npos);
-}
-
 TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   System system;
   system.start_all();
@@ -331,23 +319,6 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   EXPECT_TRUE(system.wait_still());
   close(drive(session, go(5.0, 20)));
   EXPECT_TRUE(system.wait_still());
-
-  // A proxy keeps the connection of a client that has gone, in both eras; one that sends something
-  // drives on.
-  const std::string proxy = "\r\nVia: 1.1 proxy";
-  for (const auto& [head, parameters] :
-       {std::pair(newer, modern), std::pair(session, go(5.0, 20))}) {
-    const int kept = drive(head + proxy, parameters);
-    EXPECT_TRUE(system.wait_still());
-    EXPECT_TRUE(comes(kept, "a proxy hides the rest"));
-    close(kept);
-  }
-  const json there = ask("tools/call", "go_to", go(1.4, 20), proxy)["result"];
-  EXPECT_TRUE(wait_until([&] {
-    state = ask("tasks/get", there["taskId"], {{"taskId", there["taskId"]}}, proxy)["result"];
-    return state["status"] == "completed";
-  })) << state.dump();
-  EXPECT_EQ(state["result"]["structuredContent"]["state"], "succeeded") << state;
 
   // A client is killed between its calls: its stream closes. One that comes back hears of its
   // goals.

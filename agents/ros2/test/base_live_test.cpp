@@ -24,15 +24,12 @@ class FakeBase {
  public:
   static constexpr double kWall = 2.5;  // [m]
 
-  FakeBase(const std::string& space, bool stamped)
-      : stamped_(stamped),
-        odom_(client_.writer("rt/" + space + "/odom", nav_msgs_msg_dds__Odometry__desc)),
+  explicit FakeBase(const std::string& space)
+      : odom_(client_.writer("rt/" + space + "/odom", nav_msgs_msg_dds__Odometry__desc)),
         scan_(client_.writer("rt/" + space + "/scan", sensor_msgs_msg_dds__LaserScan__desc)),
         fixed_(
             client_.writer("rt/" + space + "/tf_static", tf2_msgs_msg_dds__TFMessage__desc, true)),
-        cmd_vel_(client_.reader("rt/" + space + "/cmd_vel",
-                                stamped ? geometry_msgs_msg_dds__TwistStamped__desc
-                                        : geometry_msgs_msg_dds__Twist__desc)) {
+        cmd_vel_(client_.reader("rt/" + space + "/cmd_vel", geometry_msgs_msg_dds__Twist__desc)) {
     geometry_msgs_msg_dds__TransformStamped_ laser{};
     laser.header.frame_id = base_frame_.data();
     laser.child_frame_id = laser_frame_.data();
@@ -67,11 +64,7 @@ class FakeBase {
       velocity = twist.linear.x;
       return true;
     };
-    if (stamped_)
-      take<geometry_msgs_msg_dds__TwistStamped_>(
-          cmd_vel_, [&](const auto& each) { return obey(each.twist); });
-    else
-      take<geometry_msgs_msg_dds__Twist_>(cmd_vel_, obey);
+    take<geometry_msgs_msg_dds__Twist_>(cmd_vel_, obey);
     x = x + velocity * Seconds(kStep).count();
     nav_msgs_msg_dds__Odometry_ odometry{};
     odometry.header.frame_id = odom_frame_.data();
@@ -98,7 +91,6 @@ class FakeBase {
   }
 
   const Client client_;
-  const bool stamped_;
   std::string odom_frame_ = "odom";
   std::string base_frame_ = "base_link";
   std::string laser_frame_ = "laser";
@@ -113,12 +105,11 @@ class FakeBase {
 /// cover the times.
 class Ros2Base : public ::testing::Test {
  protected:
-  void start(const std::string& options = "") {
-    scene.robot_port =
-        "ros2:" + scene.robot + ",domain=" + test::domain() + ",interface=127.0.0.1" + options;
+  void start() {
+    scene.robot_port = "ros2:" + scene.robot + ",domain=" + test::domain() + ",interface=127.0.0.1";
     scene.start_bridge();
     EXPECT_TRUE(reason("no odometry")) << scene.status.reason;
-    base.emplace(scene.robot, !options.empty());
+    base.emplace(scene.robot);
     ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
     epoch = scene.state.stamp.epoch;
     scene.use(bus::topics::kDriveTeleop);
@@ -197,13 +188,6 @@ TEST_F(Ros2Base, DrivesAndStopsForAWallAPressALossAndAKill) {
   EXPECT_TRUE(connects_again());
   EXPECT_TRUE(drive(-0.2));
   scene.bridge->signal(SIGKILL);
-  EXPECT_TRUE(stops());
-}
-
-TEST_F(Ros2Base, ABaseWithStampsDrivesAndStops) {
-  start(",cmd-vel=stamped");
-  EXPECT_TRUE(drive(0.2)) << scene.bridge_log();
-  scene.command.velocity = 0.0;
   EXPECT_TRUE(stops());
 }
 

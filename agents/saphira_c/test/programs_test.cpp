@@ -38,15 +38,6 @@ TEST_F(Programs, AsyncTurnsAndDrives) {
   EXPECT_EQ(end.velocity, 0.0);
 }
 
-TEST_F(Programs, PacketIsServedWithoutTheOs) {
-  simulate();
-  Process program = start(example("packet"));
-  ASSERT_EQ(program.wait(), std::optional<int>(0)) << program.output();
-  EXPECT_NE(program.output().find("30 packets"), std::string::npos);
-  EXPECT_NEAR(farthest(), 0.6, 0.15);
-  EXPECT_TRUE(test::wait_until([this] { return stands(); }));
-}
-
 TEST_F(Programs, FiveMicroTasksInterruptEachOther) {
   simulate();
   Process program = start(example("five_tasks"));

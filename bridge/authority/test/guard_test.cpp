@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "lines.hpp"
 #include "saphira/base/age.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/base/random.hpp"
 
 namespace saphira::authority {
@@ -10,126 +12,94 @@ namespace {
 
 const Body kPioneer{0.22, 0.4, radians(100.0), 2.0};
 
-TEST(Guard, LeavesNormalDrivingAlone) {
-  const GuardSettings settings;
-  // Boxes at 0.3 m clearance on both sides, a wall 0.65 m ahead of the hull.
-  const std::vector<Vec2> points{{0.0, 0.52}, {0.3, -0.52}, {0.2, 0.52}, {0.87, 0.0}};
-  const Guarded out = guard(settings, kPioneer, points, 0.3, 0.5);
-  EXPECT_EQ(out.action, GuardAction::none);
-  EXPECT_DOUBLE_EQ(out.velocity, 0.3);
-  EXPECT_DOUBLE_EQ(out.rotation_velocity, 0.5);
-  EXPECT_EQ(out.reason, "");
-}
-
-TEST(Guard, StopsBeforeWhatIsAhead) {
-  const Guarded out = guard({}, kPioneer, {{0.45, 0.0}}, 0.3, 0.4);
-  EXPECT_EQ(out.action, GuardAction::stop);
-  EXPECT_EQ(out.velocity, 0.0);
-  EXPECT_DOUBLE_EQ(out.rotation_velocity, 0.4) << "turning is the way out";
-  EXPECT_EQ(out.reason, "something 0.23 m ahead; it lets go beyond 0.26 m");
-  EXPECT_EQ(out.obstacle, Vec2(0.45, 0.0));
-}
-
-TEST(Guard, SlowsOnTheApproach) {
-  const Guarded out = guard({}, kPioneer, {{0.7, 0.05}}, 0.4, 0.0);
-  EXPECT_EQ(out.action, GuardAction::slow);
-  EXPECT_GT(out.velocity, 0.05);
-  EXPECT_LT(out.velocity, 0.4);
-}
-
-TEST(Guard, LeavingIsFree) {
-  EXPECT_EQ(guard({}, kPioneer, {{-0.23, 0.0}}, 0.3, 0.0).action, GuardAction::none);
-  EXPECT_EQ(guard({}, kPioneer, {{0.23, 0.0}}, -0.1, 0.0).action, GuardAction::none);
-  EXPECT_EQ(guard({}, kPioneer, {}, 0.3, 0.0, 0.0, 0.0, {{-0.02, 0.225}}).action, GuardAction::none)
-      << "along a wall";
-}
-
-TEST(Guard, IsBlindBehindSoItIsSlowThere) {
-  Guarded out = guard({}, kPioneer, {}, -0.3, 0.0);
-  EXPECT_EQ(out.action, GuardAction::limit);
-  EXPECT_DOUBLE_EQ(out.velocity, -0.15);
-  Body body = kPioneer;
-  body.sees_behind = true;
-  out = guard({}, body, {}, -0.3, 0.0);
-  EXPECT_DOUBLE_EQ(out.velocity, -0.3);
-  out = guard({}, body, {{-0.40, 0.0}}, -0.3, 0.0);
-  EXPECT_EQ(out.action, GuardAction::stop);
-  EXPECT_EQ(out.reason, "something 0.18 m behind; it lets go beyond 0.26 m");
-}
-
-TEST(Guard, IsSlowWhereNoSonarLooksAhead) {
-  Body body = kPioneer;
-  body.sees_ahead = false;
-  const Guarded out = guard({}, body, {}, 0.3, 0.0);
-  EXPECT_EQ(out.action, GuardAction::limit);
-  EXPECT_DOUBLE_EQ(out.velocity, 0.15);
-  EXPECT_EQ(out.reason, "0.30 m/s cut to 0.15: no sonar looks ahead");
-}
-
-TEST(Guard, LimitsToTheRobotAndTheRole) {
-  GuardSettings settings;
-  Guarded out = guard(settings, kPioneer, {}, 2.0, -5.0);
-  EXPECT_EQ(out.action, GuardAction::limit);
-  EXPECT_DOUBLE_EQ(out.velocity, 0.4);
-  EXPECT_DOUBLE_EQ(out.rotation_velocity, -radians(100.0));
-  settings.max_velocity = 0.2;
-  settings.max_rotation_velocity = 0.3;
-  out = guard(settings, kPioneer, {}, -2.0, 5.0);
-  EXPECT_DOUBLE_EQ(out.velocity, -0.15);
-  EXPECT_DOUBLE_EQ(out.rotation_velocity, 0.3);
-  settings.enabled = false;
-  EXPECT_DOUBLE_EQ(guard(settings, kPioneer, {{0.2, 0.0}}, 2.0, 0.0).velocity, 2.0);
-}
-
-TEST(Guard, ApproachesSlowlyWhereAPersonMayReachIntoThePath) {
-  // A shin 12 cm beside the path: the person is wider than the shin.
-  const Vec2 shin(0.15, 0.32);
-  const Guarded out = guard({}, kPioneer, {shin}, 0.4, 0.0);
-  EXPECT_EQ(out.action, GuardAction::slow);
-  EXPECT_NEAR(out.velocity * shin.x() / shin.norm(), GuardSettings{}.anything.touch_velocity, 1e-9)
-      << "towards it";
-  EXPECT_NE(out.reason.find("beside the path"), std::string::npos) << out.reason;
-  EXPECT_EQ(guard({}, kPioneer, {{0.15, 0.66}}, 0.4, 0.0).action, GuardAction::none);
-  EXPECT_EQ(guard({}, kPioneer, {{-0.05, 0.34}}, 0.4, 0.0).action, GuardAction::none) << "passed";
-}
-
-TEST(Guard, DoesNotCreepIntoWhatIsHeardAtAnyAngle) {
-  Body body = kPioneer;
-  body.sees_behind = true;
-  for (const double bearing : {0.0, 30.0, 60.0, 83.0, 89.0}) {
-    const Vec2 way(std::cos(radians(bearing)), std::sin(radians(bearing)));
-    const Vec2 near = 0.31 * way;
-    EXPECT_EQ(guard({}, body, {near}, 0.1, 0.0).velocity, 0.0) << bearing;
-    EXPECT_EQ(guard({}, body, {-near}, -0.1, 0.0).velocity, 0.0) << bearing << " behind";
-    EXPECT_EQ(guard({}, body, {-near}, 0.1, 0.0).action, GuardAction::none) << bearing << " left";
-    EXPECT_EQ(guard({}, body, {near}, 0.0, 0.5).rotation_velocity, 0.5) << "turning is the way out";
+/// The cases of guard.txt.
+class Guards : public test::LinePlayer {
+ public:
+  Guards() {
+    events_ = {
+        {"points", [this](auto& in) { points_ = places(in); }},
+        {"edges", [this](auto& in) { edges_ = places(in); }},
+        {"body",
+         [this](auto& in) {
+           const auto name = read<std::string>(in);
+           const auto value = read<double>(in);
+           if (name.starts_with("max"))
+             (name == "max_velocity" ? body_.max_velocity : body_.max_rotation_velocity) = value;
+           else
+             body_.*kSenses().at(name) = value != 0.0;
+         }},
+        {"setting",
+         [this](auto& in) {
+           const auto name = read<std::string>(in);
+           if (name == "enabled")
+             settings_.enabled = read<bool>(in);
+           else
+             settings_.*kSettings().at(name) = read<double>(in);
+         }},
+        {"drive",
+         [this](auto& in) {
+           double wanted[4] = {};
+           for (double& one : wanted)
+             in >> one;
+           guarded_ =
+               guard(settings_, body_, points_, wanted[0], wanted[1], wanted[2], wanted[3], edges_);
+         }},
+        {"late",
+         [this](auto& in) {
+           const auto velocity = read<double>(in);
+           guarded_ = slow_for_age({velocity, 0.5, GuardAction::none, {}}, read<double>(in), 0.1);
+         }},
+        {"says", [this](auto& in) { expect_like(guarded_.reason, rest(in)); }}};
+    values_ = {{"velocity", [this] { return guarded_.velocity; }},
+               {"turn", [this] { return guarded_.rotation_velocity; }},
+               {"towards",
+                [this] { return guarded_.velocity * points_.at(0).x() / points_.at(0).norm(); }}};
+    facts_ = {{"action", [this] { return kActions[static_cast<int>(guarded_.action)]; }},
+              {"reason", [this] { return guarded_.reason; }},
+              {"silent", [this] { return yes(guarded_.reason.empty()); }},
+              {"obstacle", [this] {
+                 const Vec2 at = guarded_.obstacle.value();
+                 return format("%.2f %.2f", at.x(), at.y());
+               }}};
   }
-}
 
-TEST(Guard, PassesEdgesOfTheMapCloserThanPeople) {
-  // The posts of a door, 13 cm beside the hull on both sides.
-  const std::vector<Vec2> posts{{0.2, 0.35}, {0.2, -0.35}};
-  Body body = kPioneer;
-  body.knows_edges = true;
-  EXPECT_LT(guard({}, body, posts, 0.3, 0.0).velocity, 0.03);
-  EXPECT_GT(guard({}, body, {}, 0.3, 0.0, 0.0, 0.0, posts).velocity, 0.06);
-  EXPECT_GT(guard({}, kPioneer, posts, 0.3, 0.0).velocity, 0.06) << "without a map";
-  EXPECT_EQ(guard({}, kPioneer, {}, 0.3, 0.0, 0.0, 0.0, {{0.45, 0.0}}).velocity, 0.0)
-      << "ahead it is a wall";
-}
-
-TEST(Guard, KeepsAPersonsReach) {
-  Body body = kPioneer;
-  body.knows_edges = true;
-  for (const double bearing : {0.0, 30.0, 60.0, 70.0}) {
-    const Vec2 way(std::cos(radians(bearing)), std::sin(radians(bearing)));
-    EXPECT_EQ(guard({}, body, {0.46 * way}, 0.3, 0.0).velocity, 0.0) << bearing;
-    EXPECT_EQ(guard({}, body, {-0.46 * way}, 0.3, 0.0).action, GuardAction::none) << bearing;
+ private:
+  static constexpr const char* kActions[]{"none", "limit", "slow", "stop"};
+  static const std::map<std::string, bool Body::*>& kSenses() {
+    static const std::map<std::string, bool Body::*> all{{"sees_behind", &Body::sees_behind},
+                                                         {"sees_ahead", &Body::sees_ahead},
+                                                         {"knows_edges", &Body::knows_edges}};
+    return all;
   }
-  // The path passes at 23 cm.
-  const Vec2 abreast(0.1, 0.45);
-  const double past = guard({}, body, {abreast}, 0.3, 0.0).velocity;
-  EXPECT_NEAR(past * abreast.x() / abreast.norm(), GuardSettings{}.person.touch_velocity, 1e-9);
+  static const std::map<std::string, double GuardSettings::*>& kSettings() {
+    static const std::map<std::string, double GuardSettings::*> all{
+        {"max_velocity", &GuardSettings::max_velocity},
+        {"max_rotation_velocity", &GuardSettings::max_rotation_velocity},
+        {"max_contact_velocity", &GuardSettings::max_contact_velocity},
+        {"slow_distance", &GuardSettings::slow_distance}};
+    return all;
+  }
+  /// Of "0.2 0.35, 0.2 -0.35".
+  static std::vector<Vec2> places(std::istringstream& in) {
+    std::vector<Vec2> all;
+    double x = 0.0;
+    double y = 0.0;
+    for (char comma = ','; comma == ',' && in >> x >> y;) {
+      all.emplace_back(x, y);
+      if (!(in >> comma))
+        break;
+    }
+    return all;
+  }
+  Body body_ = kPioneer;
+  GuardSettings settings_;
+  std::vector<Vec2> points_;
+  std::vector<Vec2> edges_;
+  Guarded guarded_;
+};
+
+TEST(Guard, DoesAsWritten) {
+  EXPECT_EQ(test::play<Guards>("bridge/authority/test/guard.txt"), 14);
 }
 
 // A wide person reaches 24 cm beyond the echo of the shin. The place of an echo is off by up to 3
@@ -216,13 +186,6 @@ TEST(Guard, LooksWhereTheRobotTurnsTo) {
   EXPECT_LT(guard({}, kPioneer, points, 0.4, 1.5, 1.5).velocity, 0.5 * straight);
 }
 
-TEST(Guard, SlowZone) {
-  GuardSettings settings{.slow_distance = 0.9};
-  const Guarded out = guard(settings, kPioneer, {{1.0, 0.0}}, 0.4, 0.0);
-  EXPECT_EQ(out.action, GuardAction::slow);
-  EXPECT_DOUBLE_EQ(out.velocity, 0.15);
-}
-
 // A robot that obeys at once, with the reaction time and the deceleration that the guard assumes,
 // stops before the margin is used up, from any speed and distance.
 TEST(Guard, BrakesInTime) {
@@ -244,37 +207,8 @@ TEST(Guard, BrakesInTime) {
   }
 }
 
-// Wanted contact: slower than a stop would need, and only forward.
-TEST(Guard, LetsADriverTouchWhoMeansIt) {
-  GuardSettings settings;
-  Body body{.radius = 0.22, .deceleration = 2.0, .sees_behind = true};
-  const auto at = [&](double distance, double velocity, double contact) {
-    return guard(settings, body, {{body.radius + distance, 0.0}, {-body.radius - distance, 0.0}},
-                 velocity, 0.0, 0.0, contact);
-  };
-  EXPECT_DOUBLE_EQ(at(0.03, 0.2, 0.0).velocity, 0.0) << "nothing is meant";
-  EXPECT_DOUBLE_EQ(at(0.03, 0.2, 0.1).velocity, 0.1);
-  EXPECT_EQ(at(0.03, 0.2, 0.1).action, GuardAction::slow);
-  EXPECT_NE(at(0.03, 0.2, 0.1).reason.find("contact is meant"), std::string::npos);
-  EXPECT_DOUBLE_EQ(at(0.0, 0.05, 0.1).velocity, 0.05) << "slower than allowed";
-  EXPECT_DOUBLE_EQ(at(0.0, 0.5, 5.0).velocity, settings.max_contact_velocity);
-  EXPECT_DOUBLE_EQ(at(0.03, -0.2, 0.1).velocity, 0.0) << "backward nobody looks";
-  EXPECT_DOUBLE_EQ(at(0.6, 0.2, 0.1).velocity, at(0.6, 0.2, 0.0).velocity)
-      << "far off it makes no difference";
-  settings.max_contact_velocity = 0.0;
-  EXPECT_DOUBLE_EQ(at(0.03, 0.2, 0.1).velocity, 0.0) << "never, by option";
-}
-
 Guarded wanted(double velocity) {
   return {velocity, 0.5, GuardAction::none, {}};
-}
-
-TEST(SlowForAge, AFreshCommandPassesAsItIs) {
-  for (const double velocity : {0.0, 0.4, -0.2, 2.0}) {
-    const Guarded out = slow_for_age(wanted(velocity), 0.1, 0.1);
-    EXPECT_EQ(out.velocity, velocity);
-    EXPECT_EQ(out.action, GuardAction::none);
-  }
 }
 
 TEST(SlowForAge, TheOlderTheSlowerAheadAndBack) {
@@ -288,12 +222,6 @@ TEST(SlowForAge, TheOlderTheSlowerAheadAndBack) {
     before = out.velocity;
   }
   EXPECT_EQ(slow_for_age(wanted(0.4), 4.0, 0.1).velocity, 0.0);
-}
-
-TEST(SlowForAge, SaysHowOldTheCommandIs) {
-  const Guarded out = slow_for_age(wanted(0.4), 0.6, 0.1);
-  EXPECT_EQ(out.action, GuardAction::limit);
-  EXPECT_EQ(out.reason, "0.40 m/s cut to 0.30: the command answers the robot's state of 0.6 s ago");
 }
 
 TEST(SlowForAge, WhatTheGuardSaysStands) {

@@ -173,30 +173,6 @@ TEST_P(Cycles, SamplesOfAnEpochThatWasLeftAreRefused) {
   EXPECT_EQ(service_->status().state, v1::SERVICE_DEGRADED);
 }
 
-TEST_P(Cycles, StrayStatesOfOthersDoNotMakeItDeaf) {
-  start(false);
-  EXPECT_EQ(step(1, 1), 1U);
-  auto stray = node("stray");
-  auto writer = stray->writer(topics::kRobotState);
-  ASSERT_TRUE(eventually(*stray, [&] { return writer.matched() == 1; }));
-  // The reader may know of the writer later than the writer of the reader.
-  const auto refused = [&](const v1::RobotState& state) {
-    const auto before = service_->status().refused_samples;
-    return eventually(*service_, [&] {
-      writer.write(state);
-      next(milliseconds(1));
-      return service_->status().refused_samples > before;
-    });
-  };
-  ASSERT_TRUE(refused(robot_state(77, 5)));       // an epoch that nobody has described
-  ASSERT_TRUE(refused(robot_state(1, 1000000)));  // the epoch that is followed
-  for (std::uint64_t number = 2; number <= 20; ++number) {
-    send(1, number);
-    EXPECT_EQ(step(), number);
-  }
-  EXPECT_EQ(cycle_->stamp().epoch, 1U);
-}
-
 TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
   start(false);
   EXPECT_EQ(step(1, 1), 1U);

@@ -166,16 +166,5 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   EXPECT_TRUE(reads.take().empty());
 }
 
-TEST_F(Processes, TwelveFindEachOther) {
-  auto states = node_->reader(topics::kRobotState);
-  std::vector<saphira::test::Process> writers;
-  writers.reserve(12);
-  for (int i = 0; i < 12; ++i)
-    writers.push_back(peer("writer", {"--hz", "5"}));
-  EXPECT_TRUE(eventually(*node_, [&] { return states.matched() == 12; }));
-  auto reader = peer("reader", {"--count", "60"});
-  EXPECT_EQ(reader.wait(), 0) << reader.output();
-}
-
 }  // namespace
 }  // namespace saphira::bus::test

@@ -152,18 +152,6 @@ TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNot
   EXPECT_EQ(say("robot, cease"), "I stop at once");
 }
 
-TEST_F(DialogueOnTheBus, ACommandThatNoProgramTakesUpHasAnEnd) {
-  say("Flakey, turn left");
-  ASSERT_EQ(goals.take().size(), 1u);
-  dialogue->step();
-  dialogue->step(kTakenUp - 0.1);
-  EXPECT_EQ(answers(), "");
-  dialogue->step(kTakenUp);
-  EXPECT_EQ(answers(), std::string("I could not: ") + kNotTakenUp);
-  const auto withdrawn = test::only(goals.take());
-  EXPECT_EQ(withdrawn.data.withdrawn, kNotTakenUp);
-}
-
 TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
   say("Flakey, John usually knows where Karen is");
   const auto claimed = test::only(claims.take());
@@ -219,19 +207,6 @@ TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsAskedForAgainWhileItIsUnderway) 
   EXPECT_EQ(test::only(goals.take()).data.priority, 1);
 }
 
-TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
-  say("Flakey, take the mail from EJ-231 to EJ-233");
-  const auto first = test::only(goals.take());
-  start();
-  goals.take();
-  say("Flakey, stop");
-  const auto then = goals.take();
-  EXPECT_TRUE(std::any_of(then.begin(), then.end(), [&](const auto& sample) {
-    return sample.data.withdrawn == "Alice said \"Flakey, stop\"" &&
-           sample.data.id == first.data.id;
-  }));
-}
-
 TEST_F(DialogueOnTheBus, ATaskEndsWithTheProgramThatWantsItAndNotWithAPersonsProgram) {
   const auto says = [&](v1::UtteranceMeans means, const std::string& text) {
     v1::Utterance utterance{
@@ -276,18 +251,6 @@ TEST_F(DialogueOnTheBus, WordsOfAProgramThatHasEndedBeginNothingThatStays) {
   dialogue->step();
   const auto seen = goals.take();
   EXPECT_TRUE(seen.empty() || !seen.back().data.withdrawn.empty());
-}
-
-TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {
-  v1::BeliefSet asked;
-  asked.beliefs.resize(1);
-  asked.beliefs[0].name = "asking-about";
-  asked.beliefs[0].value = "\"given\"";
-  beliefs.write(asked);
-  EXPECT_EQ(say("here you are"), "thank you");
-  const auto claimed = test::only(claims.take());
-  EXPECT_EQ(claimed.data.name, "given");
-  EXPECT_EQ(claimed.data.value, "\"yes\"");
 }
 
 TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt) {
@@ -396,13 +359,6 @@ TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
   const v1::Answer failed = client->ask(request, 30.0, nullptr, others);
   EXPECT_EQ(failed.code, v1::ANSWER_GIVEN_UP);
   EXPECT_EQ(failed.text, "as the intentions say");
-}
-
-TEST_F(DialogueOnTheBus, WhatWasSaidLongAgoIsNotActedOn) {
-  heard.write({.id = {6, 1}, .text = "Flakey, go forward", .confidence = 1.0, .time = 1e9});
-  dialogue->step(0.0, 1e9 + 61.0);
-  EXPECT_TRUE(answers().empty());
-  EXPECT_TRUE(goals.take().empty());
 }
 
 /// The words of a stop go to the bridge itself, whatever other programs do.

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "node_options.hpp"
 #include "only.hpp"
 #include "process.hpp"
@@ -11,71 +9,6 @@
 
 namespace saphira::agent_interface {
 namespace {
-
-using std::chrono::milliseconds;
-
-v1::Request where_is_karen() {
-  return {.functor = "place_of", .arguments = {bus::text("person", "karen"), bus::open("place")}};
-}
-
-v1::Capability place_of() {
-  return bus::capability(
-      "place_of", "where a person is",
-      {bus::text_slot("person", "a name", true), bus::text_slot("place", "of the map")});
-}
-
-v1::Answer library(const v1::Request&) {
-  return bus::done({bus::text("place", "library")});
-}
-
-/// Agents of this process, and the program, on the bus.
-class OnTheBus : public testing::Test {
- protected:
-  OnTheBus() : robot(test::unique_robot()) { start(); }
-
-  void start() {
-    facilitator.reset();
-    facilitator = std::make_unique<test::Process>(
-        std::vector<std::string>{"saphira-facilitator"}, folder.path("log"),
-        std::map<std::string, std::string>{{"SAPHIRA_ROBOT", robot},
-                                           {"SAPHIRA_DOMAIN", test::domain()}});
-  }
-  /// Asks until the answer has the wanted code: discovery of the agents takes a moment.
-  v1::Answer ask_until(bus::Agent& asker, v1::AnswerCode code) {
-    v1::Answer answer;
-    test::wait_until([&] {
-      answer = asker.ask(where_is_karen(), 2.0);
-      return answer.code == code;
-    });
-    return answer;
-  }
-
-  std::string robot;
-  test::TempDir folder;
-  std::unique_ptr<test::Process> facilitator;
-};
-
-TEST_F(OnTheBus, ARequestIsRoutedAndWhatADeadAgentCouldDoIsForgotten) {
-  bus::Node node(test::node_options("person", robot));
-  bus::Agent person(node, "ann", "a person");
-  {
-    bus::Node other(test::node_options("calendar", robot));
-    bus::Agent calendar(other, "calendar", "knows where people are");
-    calendar.can(place_of(), library);
-    bus::Stop stop;
-    std::jthread answers([&] {
-      while (!stop.requested()) {
-        other.wait(milliseconds(100), &stop);
-        calendar.poll();
-      }
-    });
-    const v1::Answer answer = ask_until(person, v1::ANSWER_DONE);
-    EXPECT_EQ(answer.service, "calendar");
-    EXPECT_EQ(bus::text_of(answer.results, "place"), "library");
-    stop.request();
-  }
-  EXPECT_EQ(ask_until(person, v1::ANSWER_NOBODY).text, "no agent can do \"place_of\"");
-}
 
 /// The facilitator with an agent and an asker, on a bus in memory, with a clock that the test
 /// moves.
@@ -186,38 +119,6 @@ TEST_F(FacilitatorInMemory, ARestartBeginsNoActionAgain) {
   turn();
   asker.poll(now);
   EXPECT_EQ(told, "clean");
-}
-
-TEST_F(FacilitatorInMemory, AnAskerThatWaitsGetsTheEndOverARestart) {
-  bus::RequestClient asker(person, bus::topics::kSolve, "a person");
-  int turns = 0;
-  const auto others = [&] {
-    ++turns;
-    if (turns == 2) {
-      facilitator.reset();
-      return;
-    }
-    if (turns == 3)
-      restart();
-    turn();
-    if (turns == 5)
-      worker.answer(begun_request, bus::done({}, "clean"));
-  };
-  EXPECT_EQ(asker.ask(sweep(), 30.0, nullptr, others).text, "clean");
-  EXPECT_EQ(begun.size(), 1u);
-}
-
-TEST_F(FacilitatorInMemory, ARestartFiresATriggerNoMoreOftenThanItsTimes) {
-  v1::Trigger trigger{.kind = v1::TRIGGER_TIME, .period = 1.0, .action = "sweep", .times = 1};
-  worker.set(trigger);
-  turn();
-  for (int i = 0; i < 3; ++i) {
-    now += 2.0;
-    turn();
-    EXPECT_EQ(begun.size(), 1u) << i;
-    restart();
-    turn();
-  }
 }
 
 TEST_F(FacilitatorInMemory, AnAgentThatWasSilentIsAskedAgainAndItsTriggersFire) {

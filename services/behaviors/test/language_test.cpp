@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../src/language/program.hpp"
 #include "lines.hpp"
 #include "process.hpp"
 #include "saphira/behaviors/executive.hpp"
@@ -299,15 +300,14 @@ TEST(Language, BottomlessTextsAreTold) {
 
 TEST(Language, EveryFunctionIsDescribed) {
   const std::string description = read_file(test::source("services/behaviors/LANGUAGE.md"));
-  const std::vector<std::string> functions = language_functions();
-  EXPECT_GT(functions.size(), 20U);
-  for (const std::string& function : functions) {
-    const std::string name = function.substr(0, function.find('('));
+  EXPECT_GT(language::functions().size(), 20U);
+  for (const language::Function& function : language::functions()) {
+    const std::string name = function.name;
     // The fields of sfRobot stand there as ".rv".
     const std::size_t point = name.find('.');
     EXPECT_NE(description.find(point == std::string::npos ? name : name.substr(point)),
               std::string::npos)
-        << function;
+        << name;
   }
 }
 

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 #include "behaviors/shell/service.hpp"
 #include "node_options.hpp"
@@ -101,35 +100,6 @@ TEST_P(ShellTest, CommandsWhatIsIntended) {
   step();
   EXPECT_FALSE(command.active);
   EXPECT_TRUE(told.behaviors.empty());
-}
-
-class LiveShellTest : public ShellTest {};
-INSTANTIATE_TEST_SUITE_P(Live, LiveShellTest, testing::Values(false));
-
-TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
-  bus::Reader<v1::ServiceStatus> statuses{bridge.reader(bus::topics::kStatus)};
-  bool said = false;
-  std::thread later([&] {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (!said && std::chrono::steady_clock::now() < end) {
-      state();  // refused after a while: the robot has no description
-      bridge.wait(std::chrono::milliseconds(50));
-      for (const auto& sample : statuses.take())
-        said = said || sample.data.reason == "waits for robot/description";
-    }
-    describe();
-    state();
-  });
-  ASSERT_TRUE(shell.step(stop));
-  later.join();
-  EXPECT_TRUE(said);
-  intend({behavior("ConstantVelocity", 2)});
-  commands.take();
-  behaviors.take();
-  one({});
-  EXPECT_TRUE(command.active);
-  // The status may report a skipped cycle.
-  EXPECT_NE(service.status().state, v1::SERVICE_WAITING) << service.status().reason;
 }
 
 // A minute of published samples is kept for late readers.

@@ -202,26 +202,5 @@ TEST(RandomActivities, NeverLoseAParentAndLeaveNothingBehind) {
   EXPECT_GT(ends[v1::GOAL_FAILED], 200);
 }
 
-/// A world that runs twice runs the same.
-TEST(RandomActivities, DependOnNothingButTheirWorld) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    std::vector<std::string> displays[2];
-    for (auto& seen : displays) {
-      Random random(seed);
-      Stage stage(schemas(random), core_functions(), 400, MayFail::kYes);
-      if (!stage.loaded.ok())
-        break;
-      for (int cycle = 0; cycle < 60; ++cycle) {
-        if (random.chance(0.1))
-          stage.ask(static_cast<std::uint64_t>(cycle) + 1,
-                    "s" + std::to_string(random.next() % kSchemas));
-        stage.satisfy("n1", random.uniform(0.0, 1.0), 1);
-        seen.push_back(stage.display());
-      }
-    }
-    EXPECT_EQ(displays[0], displays[1]);
-  }
-}
-
 }  // namespace
 }  // namespace saphira::intentions

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace saphira::interpretation {
 namespace {
@@ -59,6 +60,27 @@ TEST(Grid, IsClearedFromSeveralDirections) {
     grid.add(0, {1.0 - std::cos(angle), 0.15 - std::sin(angle), angle}, 3.0);
   }
   EXPECT_LT(grid.probability({1.0, 0.15}).value_or(1.0), 0.3);
+}
+
+// A wall at y = 1 with an opening, whose edges are heard by the rim of the beam: the rest of their
+// arcs would close it if it did not explain the echoes as well.
+TEST(Grid, ADoorwayStaysOpen) {
+  const auto blocked = [](double attribution) {
+    GridSettings settings;
+    settings.attribution = attribution;
+    Grid grid(settings);
+    for (double x = 0.0; x < 5.0; x += 0.07) {
+      const double edge = x <= 2.0 || x >= 2.9 ? 0.0 : std::min(x - 2.0, 2.9 - x);
+      grid.add(0, {x, 0.0, kPi / 2.0}, edge < 0.17 ? std::hypot(1.0, edge) : 2.5);
+    }
+    int cells = 0;
+    for (int x = 0; x <= 10; ++x)
+      for (int y = -4; y <= 4; ++y)
+        cells += grid.probability({2.2 + 0.05 * x, 1.0 + 0.05 * y}).value_or(0.0) > 0.5 ? 1 : 0;
+    return cells;
+  };
+  EXPECT_EQ(blocked(GridSettings().attribution), 0);
+  EXPECT_GT(blocked(0.0), 0);
 }
 
 TEST(Grid, GoesWithTheRobotInTiles) {

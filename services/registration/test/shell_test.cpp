@@ -195,20 +195,6 @@ TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
   }
   cycle();
   EXPECT_EQ(registration.state, v1::REGISTRATION_TRACKING);
-  test::Tour to_and_fro({{9.2, 7.0}, {2.0, 7.0}}, true);
-  int accepted = 0;
-  int off = 0;
-  for (int i = 0; i < 1500; ++i) {
-    tour(to_and_fro, 1);
-    off += error() > 0.3 ? 1 : 0;
-    for (const v1::Match& match : registration.matches)
-      accepted += match.accepted ? 1 : 0;
-    ASSERT_EQ(registration.state, v1::REGISTRATION_TRACKING) << registration.reason;
-    ASSERT_LT(error(), 0.8) << "in cycle " << i;
-  }
-  EXPECT_GE(to_and_fro.reached(), 4U);
-  EXPECT_GT(accepted, 30);
-  EXPECT_LT(off, 75) << "of 1500 cycles farther than 0.3 m from the truth";
   EXPECT_EQ(registration.environment, 1U);
 }
 

@@ -199,25 +199,6 @@ TEST(Localization, AMapThatIsPartlyWrongDoesNotLoseIt) {
   EXPECT_LT(quantile(result.registered.position, 0.95), 0.4);
 }
 
-TEST(Localization, ARestartGoesOnWithoutAJump) {
-  Drive robot(on_office(doubled(1)));
-  patrol(robot, office_tour(), 900);
-  const auto remembered = robot.registration().remembered();
-  Core again({office(), "", std::nullopt, false, true}, remembered);
-  // Two seconds were missed; dead reckoning bridges the way of that time.
-  Tour tour(office_tour(), true);
-  for (int i = 0; i < 20; ++i) {
-    tour.act(robot, robot.believed());
-    robot.advance();
-  }
-  const Seen& seen = robot.seen();
-  again.processes().step(seen.cycle);
-  const Output output = again.step({seen.cycle, &robot.mounts(), Drive::kOdom, seen.pose_in_odom,
-                                    robot.percepts(), seen.readings});
-  EXPECT_EQ(output.state, v1::REGISTRATION_TRACKING);
-  EXPECT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.2);
-}
-
 /// A registration with the memory of one drive, in a robot that begins another. True where it has
 /// found its pose, and has never reported tracking at an error above 0.6 m.
 bool finds_itself(const registration::Remembered& remembered, const Pose& truth,
@@ -259,33 +240,6 @@ TEST(Localization, WhereDeadReckoningHasBegunAnewWhatIsRememberedIsAGuess) {
                            {{17.5, 25.0}, {17.5, 9.0}, {19.0, 7.0}, {25.6, 7.0}, {25.6, 20.0}},
                            1800))
       << "at neither";
-}
-
-TEST(Localization, SwitchedOffItGoesOnByDeadReckoning) {
-  Drive robot(on_office(doubled(1)));
-  patrol(robot, office_tour(), 300);
-  robot.ask({"switch", {{"on", false}}});
-  Tour tour(office_tour(), true);
-  for (int i = 0; i < 100; ++i) {
-    tour.act(robot, robot.believed());
-    robot.advance();
-    EXPECT_EQ(robot.registered().state, v1::REGISTRATION_OFF);
-    EXPECT_TRUE(robot.registered().matches.empty());
-  }
-  EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.6);
-  robot.ask({"switch", {{"on", true}}});
-  robot.advance();
-  EXPECT_EQ(robot.registered().state, v1::REGISTRATION_TRACKING);
-}
-
-TEST(Localization, TheEnvironmentIsTheCorridorOrJunctionThatItIsIn) {
-  Drive robot(on_office(doubled(1)));
-  robot.advance();
-  EXPECT_EQ(robot.registered().environment, 2U);
-  Tour tour({{17.5, 7.2}}, false);
-  while (tour.act(robot, robot.believed()) && robot.seen().cycle < 600)
-    robot.advance();
-  EXPECT_EQ(robot.registered().environment, 12U);
 }
 
 }  // namespace

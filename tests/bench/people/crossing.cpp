@@ -8,7 +8,6 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/shortest_ways.hpp"
-#include "saphira/sim/contacts.hpp"
 
 namespace saphira::test {
 
@@ -386,8 +385,7 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
                .guard = true,
                .knows_walls = kPlaceError});
   const double radius = drive.parameters().radius;
-  sim::ContactWatch watch(drive.scene(), drive.robot().number(), drive.parameters());
-  drive.scene().set_watch([&watch] { watch.tick(); });
+  const sim::ContactWatch& watch = drive.watch();
   Navigator navigator(crossing, radius, options.body);
   std::size_t told = 0;
   CrossingResult result;

@@ -166,13 +166,5 @@ TEST(Perception, DrivingObliquelyIsNoHindrance) {
   EXPECT_GE(total.found, 0.8 * total.passed);
 }
 
-TEST(Perception, TheGridKeepsWallsAndDoorways) {
-  const GridScore score = grid_after({}, 3000);
-  EXPECT_GT(score.walls, 0.85);
-  // With each cell of an arc for itself 0.26 and 0.05.
-  EXPECT_LT(score.doorways.value(), 0.05);
-  EXPECT_LT(score.free, 0.02);
-}
-
 }  // namespace
 }  // namespace saphira::test

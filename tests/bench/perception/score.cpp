@@ -31,12 +31,6 @@ double nearest_end(const sim::Things& things, const Vec2& at) {
   return least;
 }
 
-const Vec2& nearest(const std::vector<Vec2>& path, const Vec2& at) {
-  return *std::min_element(path.begin(), path.end(), [&](const Vec2& a, const Vec2& b) {
-    return (a - at).squaredNorm() < (b - at).squaredNorm();
-  });
-}
-
 }  // namespace
 
 Score::Score(Drive& drive, maps::Map map)
@@ -155,104 +149,6 @@ Count Score::count(PointType type) const {
   return count;
 }
 
-namespace {
-
-// The ground truth for a grid, in the grid's frame.
-struct GridTruth {
-  std::vector<Vec2> surfaces;           // points of visible surfaces within 2 m of the way
-  std::vector<maps::Feature> doorways;  // open ones, within 1.5 m of it
-  std::function<bool(const Vec2& at)> is_free;
-};
-// True for a point within 2 m of the path that is not `blocked` from its nearest point.
-bool seen_from(const std::vector<Vec2>& path, const Vec2& at,
-               const std::function<bool(const Vec2& from, const Vec2& to)>& blocked) {
-  return !path.empty() && (nearest(path, at) - at).norm() <= 2.0 && !blocked(nearest(path, at), at);
-}
-
-std::vector<maps::Feature> doorways_beside(const std::vector<Vec2>& path, const maps::Map& map) {
-  std::vector<maps::Feature> out;
-  for (const maps::Feature& door : map.features) {
-    const Vec2 at = door.pose_in_map.position();
-    if (door.type == PointType::door && !path.empty() && (nearest(path, at) - at).norm() <= 1.5)
-      out.push_back(door);
-  }
-  return out;
-}
-
-GridTruth grid_truth(const sim::World& world, const maps::Map& map, const std::vector<Vec2>& path) {
-  const double cell = interpretation::GridSettings{}.resolution;
-  GridTruth truth;
-  const auto blocked = [&](const Vec2& from, const Vec2& at) {
-    const double apart = (from - at).norm();
-    return sim::cast_ray(world.segments, from, (at - from) / apart, apart - 0.02).has_value();
-  };
-  for (const sim::Segment& segment : world.segments) {
-    const Vec2 way = segment.to - segment.from;
-    const int steps = static_cast<int>(way.norm() / cell);
-    for (int i = 0; i <= steps; ++i) {
-      const Vec2 at = segment.from + (i + 0.5) / (steps + 1.0) * way;
-      if (seen_from(path, at, blocked))
-        truth.surfaces.push_back(at);
-    }
-  }
-  truth.doorways = doorways_beside(path, map);
-  truth.is_free = [&world](const Vec2& at) {
-    return at.x() >= 0.0 && at.y() >= 0.0 && at.x() < world.width && at.y() < world.height &&
-           sim::distance(world.segments, at) > 0.15;
-  };
-  return truth;
-}
-
-GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth) {
-  const double cell = grid.settings().resolution;
-  GridScore score;
-  int kept = 0;
-  for (const Vec2& at : truth.surfaces) {
-    double most = 0.0;
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        most = std::max(most, grid.probability(at + cell * Vec2(x, y)).value_or(0.0));
-    kept += most > 0.5 ? 1 : 0;
-  }
-  score.walls = truth.surfaces.empty() ? 0.0 : kept / static_cast<double>(truth.surfaces.size());
-  int inside = 0;
-  int blocked = 0;
-  for (const maps::Feature& door : truth.doorways) {
-    // The opening, without 0.15 m at its posts and 0.2 m on either side of the wall.
-    const int deep = static_cast<int>(0.2 / cell);
-    const int wide = static_cast<int>((door.width / 2.0 - 0.15) / cell);
-    for (int i = -deep; i <= deep; ++i)
-      for (int k = -wide; k <= wide; ++k) {
-        const auto probability = grid.probability(transform(door.pose_in_map, cell * Vec2(i, k)));
-        if (!probability)
-          continue;
-        ++inside;
-        blocked += *probability > 0.5 ? 1 : 0;
-      }
-  }
-  if (inside > 0)
-    score.doorways = static_cast<double>(blocked) / inside;
-  int free = 0;
-  int wrong = 0;
-  for (const interpretation::TileKey& key : grid.tiles())
-    for (long row = 0; row < interpretation::Grid::kTile; ++row)
-      for (long column = 0; column < interpretation::Grid::kTile; ++column) {
-        const Vec2 at =
-            cell *
-            Vec2(static_cast<double>(key.column * interpretation::Grid::kTile + column) + 0.5,
-                 static_cast<double>(key.row * interpretation::Grid::kTile + row) + 0.5);
-        const auto probability = grid.probability(at);
-        if (!probability || !truth.is_free(at))
-          continue;
-        ++free;
-        wrong += *probability > 0.5 ? 1 : 0;
-      }
-  score.free = static_cast<double>(wrong) / std::max(1, free);
-  return score;
-}
-
-}  // namespace
-
 std::vector<Vec2> patrol(const std::string& world) {
   if (world == "office-floor")
     return {{17.5, 7.2},  {35.5, 7.0},  {25.6, 7.0}, {25.6, 25.0}, {17.5, 25.0},
@@ -269,24 +165,6 @@ std::vector<Vec2> patrol(const std::string& world) {
 
 maps::Map map_of(const std::string& world) {
   return maps::load_map(find_file(config_folder() + "/maps", world, ".map"));
-}
-
-GridScore grid_after(const DriveOptions& options, std::uint64_t cycles) {
-  Drive drive(options);
-  interpretation::Settings settings;
-  settings.sonars = drive.mounts();
-  settings.grid.window = 100.0;
-  interpretation::Interpretation interpretation(settings);
-  Tour tour(patrol(options.world), true);
-  std::vector<Vec2> path;
-  while (drive.seen().cycle < cycles) {
-    tour.act(drive, drive.seen().true_pose_in_world);
-    const Seen& seen = drive.advance();
-    interpretation.step({seen.cycle, seen.true_pose_in_world, seen.readings});
-    if (seen.cycle % 10 == 0)
-      path.push_back(seen.true_pose_in_world.position());
-  }
-  return score_grid(interpretation.grid(), grid_truth(drive.world(), map_of(options.world), path));
 }
 
 }  // namespace saphira::test

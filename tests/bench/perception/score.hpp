@@ -3,12 +3,10 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "drive/drive.hpp"
-#include "saphira/interpretation/interpretation.hpp"
 #include "saphira/maps/map.hpp"
 
 namespace saphira::test {
@@ -66,15 +64,6 @@ class Score {
   int passed_ = 0;
   int found_ = 0;
 };
-
-struct GridScore {
-  double walls = 0.0;  ///< share of the surfaces along the way that the grid has
-  /// Share of the open doorways along the way that the grid shows as blocked; nothing without any.
-  std::optional<double> doorways;
-  double free = 0.0;  ///< share of the free cells that the grid shows as occupied
-};
-/// After a patrol, from the readings at the true pose.
-GridScore grid_after(const DriveOptions& options, std::uint64_t cycles);
 
 /// The points of a patrol of a world of config/worlds that goes through all its corridors.
 std::vector<Vec2> patrol(const std::string& world);

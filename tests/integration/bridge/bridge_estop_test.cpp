@@ -81,46 +81,5 @@ TEST(BridgeEstop, HoldsWithoutItsButtonOverANewConnectionAndARestart) {
   EXPECT_NE(scene.status.reason.find("emergency stop, pressed by button"), std::string::npos);
 }
 
-/// The way from the press to the standstill [m], of a robot at 0.4 m/s. In lockstep.
-double way_to_standstill(const std::string& robot_file) {
-  Scene scene(true);
-  scene.robot_file = robot_file;
-  scene.start();
-  forward(scene.command, 0.4);
-  Button button(scene);
-  scene.permit(50);
-  EXPECT_TRUE(scene.until([&] { return scene.state.stamp.cycle == 50; })) << scene.bridge_log();
-  EXPECT_GT(scene.state.velocity, 0.38);
-  EXPECT_TRUE(scene.until([&] {
-    button.say(true);
-    return scene.grant.estopped;
-  }));
-  scene.permit(100);
-  EXPECT_TRUE(scene.until([&] { return scene.state.stamp.cycle == 100; }));
-  EXPECT_TRUE(scene.rests());
-  const std::vector<sim::TraceRow> rows = scene.end();
-  return rows.at(99).pose_in_world.x - rows.at(49).pose_in_world.x;
-}
-
-// By a velocity of zero it would be 0.27 m at the server's 0.3 m/s2.
-TEST(BridgeInLockstep, AnEmergencyStopBrakesHarderThanAStopWhereTheRobotCan) {
-  EXPECT_LT(way_to_standstill("p3dx.p"), 0.2);
-}
-
-TEST(BridgeInLockstep, AnEmergencyStopStopsARobotThatHasNone) {
-  EXPECT_LT(way_to_standstill("pioneer.p"), 0.2);
-}
-
-TEST(BridgeEstop, TheCommandLineSaysThatNobodyConfirms) {
-  const Scene scene;
-  Process estop({"saphira", "--robot", scene.robot, "--domain", domain(), "estop"},
-                scene.folder.path("estop"));
-  ASSERT_TRUE(wait_until([&] { return estop.output().find("NOT CONFIRMED") != std::string::npos; }))
-      << estop.output();
-  EXPECT_TRUE(estop.running()) << "it goes on trying";
-  estop.signal(SIGINT);
-  EXPECT_EQ(estop.wait(), 1);
-}
-
 }  // namespace
 }  // namespace saphira::test

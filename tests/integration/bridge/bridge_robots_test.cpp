@@ -76,29 +76,6 @@ INSTANTIATE_TEST_SUITE_P(All, BridgeRobots,
                            return name;
                          });
 
-TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
-  Scene scene(true);
-  scene.world += "11500 8000 11500 12000\n";
-  scene.start();
-  forward(scene.command, 0.4);
-  scene.permit(150);
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp.cycle == 150; })) << scene.bridge_log();
-  EXPECT_EQ(scene.grant.guard, v1::GUARD_STOP);
-  EXPECT_NE(scene.grant.guard_reason.find("ahead"), std::string::npos);
-  EXPECT_TRUE(scene.rests());
-  // Turning away is free.
-  forward(scene.command, 0.4, 0.8);
-  scene.permit(200);
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity > 0.3; }));
-  std::vector<sim::TraceRow> rows = scene.end();
-  ASSERT_GE(rows.size(), 150U);
-  rows.resize(150);
-  EXPECT_EQ(rows.back().contacts, 0);
-  // Room for a person, who reaches farther than the shin's echo.
-  EXPECT_GT(rows.back().clearance, 0.2);
-  EXPECT_LT(rows.back().clearance, 0.35) << "stopped needlessly early";
-}
-
 TEST(BridgeDevices, FromTheCommandLine) {
   Scene scene;
   scene.robot_file = "p3dx-sh.p";

@@ -94,26 +94,5 @@ TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
   ASSERT_TRUE(scene.until([&] { return scene.status.state == v1::SERVICE_RUNNING; }));
 }
 
-// The bridge hears nothing but is heard: a driver that ignores the robot's state keeps sending
-// commands, and a SYNC0 of the bridge would reset the robot's watchdog.
-TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
-  LineScene scene;
-  scene.follows_cycles = false;
-  scene.drive_off();
-  scene.expect_halves();
-  scene.line.cut_from_robot(true);
-  const std::uint64_t cut = scene.trace().back().cycle;
-  const int cycles = scene.cycles_to_stand(cut);
-  std::printf("stood still %d cycles after the line fell silent\n", cycles);
-  EXPECT_GE(cycles, 0);
-  EXPECT_LE(cycles, 5 + 5);
-  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason;
-  scene.watch(milliseconds(2000));
-  for (const sim::TraceRow& row : scene.trace())
-    if (row.cycle > cut + static_cast<std::uint64_t>(cycles)) {
-      ASSERT_EQ(row.velocity, 0.0) << "cycle " << row.cycle;
-    }
-}
-
 }  // namespace
 }  // namespace saphira::test

@@ -244,28 +244,23 @@ void put(double value, double* out) {
 }
 
 template <class F, class R, class... A>
-Function entry(const char* name, const char* meaning, R (F::*)(A...) const) {
-  return {name,
-          kTypeOf<R>,
-          {kTypeOf<A>...},
-          [](Call&, [[maybe_unused]] const double* a, double* out) {
-            // Braces take the arguments in order.
-            put(std::apply(F{}, std::tuple<A...>{take<A>(a)...}), out);
-          },
-          meaning};
+Function entry(const char* name, R (F::*)(A...) const) {
+  return {
+      name, kTypeOf<R>, {kTypeOf<A>...}, [](Call&, [[maybe_unused]] const double* a, double* out) {
+        // Braces take the arguments in order.
+        put(std::apply(F{}, std::tuple<A...>{take<A>(a)...}), out);
+      }};
 }
 template <class F, class R>
-Function entry(const char* name, const char* meaning, R (F::*)(const Context&) const) {
-  return {name,
-          kTypeOf<R>,
-          {},
-          [](Call& call, const double*, double* out) { put(F{}(*call.context), out); },
-          meaning};
+Function entry(const char* name, R (F::*)(const Context&) const) {
+  return {name, kTypeOf<R>, {}, [](Call& call, const double*, double* out) {
+            put(F{}(*call.context), out);
+          }};
 }
 /// A function of points and numbers, or of the context. Its types are those of the language.
 template <class F>
-Function entry(const char* name, const char* meaning, F /*function*/) {
-  return entry(name, meaning, &F::operator());
+Function entry(const char* name, F /*function*/) {
+  return entry(name, &F::operator());
 }
 
 }  // namespace
@@ -274,161 +269,80 @@ const std::vector<Function>& functions() {
   using D = const double*;
   static const std::vector<Function> all_functions{
       // Points and lines (manual 6.6.3.1).
-      entry("sfPointPhi", "bearing of a point from the robot, left is positive",
-            [](Pose p) { return lps::phi(p); }),
-      entry("sfPointDist", "distance of a point from the robot",
-            [](Pose p) { return lps::distance(p); }),
-      entry("sfPointNormalDist",
-            "distance of the robot from the line through a point, along its direction",
-            [](Pose p) { return lps::normal_distance(p); }),
-      entry("sfPointDistPoint", "distance between two points",
-            [](Pose p, Pose q) { return lps::distance(p, q); }),
-      entry("sfPointNormalDistPoint",
-            "distance of the second point from the line through the first",
-            [](Pose p, Pose q) { return lps::normal_distance(p, q); }),
-      entry("sfPointXo", "x of the robot in the coordinates of a point",
-            [](Pose p) { return lps::xo(p); }),
-      entry("sfPointYo", "y of the robot in the coordinates of a point",
-            [](Pose p) { return lps::yo(p); }),
-      entry("sfPointXoPoint", "x of the second point in the coordinates of the first",
-            [](Pose p, Pose q) { return lps::xo(p, q); }),
-      entry("sfPointYoPoint", "y of the second point in the coordinates of the first",
-            [](Pose p, Pose q) { return lps::yo(p, q); }),
-      entry("sfPointBaricenter", "the point midway between two",
-            [](Pose p, Pose q) { return lps::baricenter(p, q); }),
-      entry("sfPointMove", "a point moved by dx and dy in its own coordinates",
-            [](Pose p, double x, double y) { return lps::move(p, x, y); }),
-      entry("sfPointTurn", "a point with its direction turned by an angle",
+      entry("sfPointPhi", [](Pose p) { return lps::phi(p); }),
+      entry("sfPointDist", [](Pose p) { return lps::distance(p); }),
+      entry("sfPointNormalDist", [](Pose p) { return lps::normal_distance(p); }),
+      entry("sfPointDistPoint", [](Pose p, Pose q) { return lps::distance(p, q); }),
+      entry("sfPointNormalDistPoint", [](Pose p, Pose q) { return lps::normal_distance(p, q); }),
+      entry("sfPointXo", [](Pose p) { return lps::xo(p); }),
+      entry("sfPointYo", [](Pose p) { return lps::yo(p); }),
+      entry("sfPointXoPoint", [](Pose p, Pose q) { return lps::xo(p, q); }),
+      entry("sfPointYoPoint", [](Pose p, Pose q) { return lps::yo(p, q); }),
+      entry("sfPointBaricenter", [](Pose p, Pose q) { return lps::baricenter(p, q); }),
+      entry("sfPointMove", [](Pose p, double x, double y) { return lps::move(p, x, y); }),
+      entry("sfPointTurn",
             [](Pose p, double x) {
               return Pose{p.x, p.y, norm2_angle(p.th + x)};
             }),
-      entry("sfPoint", "a point from x, y and th, before the robot",
+      entry("sfPoint",
             [](double x, double y, double z) {
               return Pose{x, y, z};
             }),
-      entry("sfChangeVP", "the second point in the coordinates of the first",
-            [](Pose p, Pose q) { return lps::change_vp(p, q); }),
-      entry("sfUnchangeVP",
-            "the second point, given in the coordinates of the first, before the robot",
-            [](Pose p, Pose q) { return lps::unchange_vp(p, q); }),
-      entry("sfGiven", "1 where an optional point was given, else 0",
-            [](Pose p) { return !(std::isnan(p.x) || std::isnan(p.y)); }),
+      entry("sfChangeVP", [](Pose p, Pose q) { return lps::change_vp(p, q); }),
+      entry("sfUnchangeVP", [](Pose p, Pose q) { return lps::unchange_vp(p, q); }),
+      entry("sfGiven", [](Pose p) { return !(std::isnan(p.x) || std::isnan(p.y)); }),
       // Angles.
-      entry("sfNormAngle", "the angle in [0, 2 pi)", [](double x) { return norm_angle(x); }),
-      entry("sfNorm2Angle", "the angle in (-pi, pi]", [](double x) { return norm2_angle(x); }),
-      entry("sfNorm3Angle", "the angle in [-pi/2, pi/2]", [](double x) { return norm3_angle(x); }),
-      entry("sfAddAngle", "the sum in [0, 2 pi)",
-            [](double x, double y) { return add_angle(x, y); }),
-      entry("sfSubAngle", "the difference in [0, 2 pi)",
-            [](double x, double y) { return sub_angle(x, y); }),
-      entry("sfAdd2Angle", "the sum in (-pi, pi]",
-            [](double x, double y) { return add2_angle(x, y); }),
-      entry("sfSub2Angle", "the difference in (-pi, pi]",
-            [](double x, double y) { return sub2_angle(x, y); }),
+      entry("sfNormAngle", [](double x) { return norm_angle(x); }),
+      entry("sfNorm2Angle", [](double x) { return norm2_angle(x); }),
+      entry("sfNorm3Angle", [](double x) { return norm3_angle(x); }),
+      entry("sfAddAngle", [](double x, double y) { return add_angle(x, y); }),
+      entry("sfSubAngle", [](double x, double y) { return sub_angle(x, y); }),
+      entry("sfAdd2Angle", [](double x, double y) { return add2_angle(x, y); }),
+      entry("sfSub2Angle", [](double x, double y) { return sub2_angle(x, y); }),
       // Sonars (manual 6.6.2) and the obstacle memory.
-      {"sfOccBox",
-       kR,
-       {kI, kR, kR, kR, kR},
-       occ_box,
-       "distance along sfFRONT or sfSIDES to the nearest reading in a box: axis, cx, cy, h, w"},
-      {"sfOccPlane",
-       kR,
-       {kI, kI, kR, kR, kR},
-       occ_plane,
-       "distance to the nearest reading in a strip: direction, source, d, s1, s2"},
-      {"sfFreePath", kR, {kR, kR, kR}, path, "how far a disc can go: direction, its radius, limit"},
-      {"sfFreePathLeft",
-       kR,
-       {kR, kR},
-       path_beside<Beside::left>,
-       "how far a disc can go straight ahead past obstacles on the left: radius, limit"},
-      {"sfFreePathRight",
-       kR,
-       {kR, kR},
-       path_beside<Beside::right>,
-       "how far a disc can go straight ahead past obstacles on the right: radius, limit"},
-      {"sfNearestLeft",
-       kR,
-       {kR, kR, kR},
-       nearest_beside<Beside::left>,
-       "distance of the nearest obstacle on the left, with x from, to; limit"},
-      {"sfNearestRight",
-       kR,
-       {kR, kR, kR},
-       nearest_beside<Beside::right>,
-       "distance of the nearest obstacle on the right, with x from, to; limit"},
-      {"sfLaneOffset",
-       kR,
-       {kP, kR, kR},
-       lane_offset,
-       "how far to the left of a lane's middle a way along it keeps that distance from the "
-       "obstacles "
-       "of both sides, or the middle between them: lane, distance, reach"},
-      {"sfWay",
-       kR,
-       {kI, kR, kR},
-       [](Call& c, D a, double* o) { *o = way(c, a).direction; },
-       "the direction to go around an obstacle: sfLEFT or sfRIGHT, direction wished, reach"},
-      {"sfWayCost",
-       kR,
-       {kI, kR, kR},
-       [](Call& c, D a, double* o) { *o = way(c, a).cost; },
-       "what sfWay's direction costs, as an angle: the more it turns and the tighter it is"},
-      {"sfWideWay",
-       kR,
-       {kR, kR, kR},
-       wide_way,
-       "the nearest direction, up to 60 degrees away, that leads so far past everything, or as far "
-       "as can be: direction, distance, reach"},
+      {"sfOccBox", kR, {kI, kR, kR, kR, kR}, occ_box},
+      {"sfOccPlane", kR, {kI, kI, kR, kR, kR}, occ_plane},
+      {"sfFreePath", kR, {kR, kR, kR}, path},
+      {"sfFreePathLeft", kR, {kR, kR}, path_beside<Beside::left>},
+      {"sfFreePathRight", kR, {kR, kR}, path_beside<Beside::right>},
+      {"sfNearestLeft", kR, {kR, kR, kR}, nearest_beside<Beside::left>},
+      {"sfNearestRight", kR, {kR, kR, kR}, nearest_beside<Beside::right>},
+      {"sfLaneOffset", kR, {kP, kR, kR}, lane_offset},
+      {"sfWay", kR, {kI, kR, kR}, [](Call& c, D a, double* o) { *o = way(c, a).direction; }},
+      {"sfWayCost", kR, {kI, kR, kR}, [](Call& c, D a, double* o) { *o = way(c, a).cost; }},
+      {"sfWideWay", kR, {kR, kR, kR}, wide_way},
       // The robot.
-      entry("sfRobotRadius", "of the hull",
-            [](const Context& c) { return c.model.radius * kMillimetres; }),
-      entry("sfRobotDecel", "mm/s2 of a stop",
-            [](const Context& c) { return c.model.deceleration * kMillimetres; }),
-      entry("sfRobot.tv", "velocity",
-            [](const Context& c) { return c.robot.velocity * kMillimetres; }),
-      entry("sfRobot.rv", "deg/s of rotation, counter-clockwise",
-            [](const Context& c) { return degrees(c.robot.rotation_velocity); }),
-      entry("sfRobot.mtv", "the highest velocity",
-            [](const Context& c) { return c.model.max_velocity * kMillimetres; }),
-      entry("sfRobot.mrv", "deg/s, the highest velocity of rotation",
-            [](const Context& c) { return degrees(c.model.max_rotation_velocity); }),
-      entry("sfRobot.ax", "x by dead reckoning",
-            [](const Context& c) { return c.robot.pose_in_odom.x * kMillimetres; }),
-      entry("sfRobot.ay", "y by dead reckoning",
-            [](const Context& c) { return c.robot.pose_in_odom.y * kMillimetres; }),
-      entry("sfRobot.ath", "heading by dead reckoning",
-            [](const Context& c) { return c.robot.pose_in_odom.th; }),
-      entry("sfCycle", "number of the cycle; ten are a second",
-            [](const Context& c) { return static_cast<double>(c.cycle); }),
+      entry("sfRobotRadius", [](const Context& c) { return c.model.radius * kMillimetres; }),
+      entry("sfRobotDecel", [](const Context& c) { return c.model.deceleration * kMillimetres; }),
+      entry("sfRobot.tv", [](const Context& c) { return c.robot.velocity * kMillimetres; }),
+      entry("sfRobot.rv", [](const Context& c) { return degrees(c.robot.rotation_velocity); }),
+      entry("sfRobot.mtv", [](const Context& c) { return c.model.max_velocity * kMillimetres; }),
+      entry("sfRobot.mrv", [](const Context& c) { return degrees(c.model.max_rotation_velocity); }),
+      entry("sfRobot.ax", [](const Context& c) { return c.robot.pose_in_odom.x * kMillimetres; }),
+      entry("sfRobot.ay", [](const Context& c) { return c.robot.pose_in_odom.y * kMillimetres; }),
+      entry("sfRobot.ath", [](const Context& c) { return c.robot.pose_in_odom.th; }),
+      entry("sfCycle", [](const Context& c) { return static_cast<double>(c.cycle); }),
       // Values that behaviors pass to those of higher priority.
-      entry("sfGoalKnown", "1 where a behavior below has said where it goes, else 0",
-            [](const Context& c) { return c.shared.goal_bearing.has_value(); }),
-      entry("sfGoalPhi", "where a behavior below goes: bearing; 0 where none has said it",
-            [](const Context& c) { return c.shared.goal_bearing.value_or(0.0); }),
-      entry("sfGoalDist", "where a behavior below goes: how far; 1e9 where none has said it",
+      entry("sfGoalKnown", [](const Context& c) { return c.shared.goal_bearing.has_value(); }),
+      entry("sfGoalPhi", [](const Context& c) { return c.shared.goal_bearing.value_or(0.0); }),
+      entry("sfGoalDist",
             [](const Context& c) {
               return c.shared.goal_bearing ? c.shared.goal_distance * kMillimetres : 1e9;
             }),
-      {"sfSetGoal", kN, {kR, kR}, set_goal, "says where this behavior goes: bearing and distance"},
-      entry("sfPreferredTurn", "the value of sfPreferredTurnDir",
+      {"sfSetGoal", kN, {kR, kR}, set_goal},
+      entry("sfPreferredTurn",
             [](const Context& c) { return static_cast<int>(c.shared.preferred_turn); }),
-      {"sfSetPreferredTurn", kN, {kI}, set_preferred, "sets sfPreferredTurnDir"},
-      {"sfDrawLane",
-       kN,
-       {kP, kR, kR},
-       draw_lane,
-       "shows the lane: a point on it, directed along it; to its left edge, to its right edge"},
+      {"sfSetPreferredTurn", kN, {kI}, set_preferred},
+      {"sfDrawLane", kN, {kP, kR, kR}, draw_lane},
       // Numbers.
-      entry("sqrt", "square root", [](double x) { return std::sqrt(x); }),
-      entry("sin", "sine", [](double x) { return std::sin(x); }),
-      entry("cos", "cosine", [](double x) { return std::cos(x); }),
-      entry("tan", "tangent", [](double x) { return std::tan(x); }),
-      entry("atan2", "the angle of (x, y) from y and x",
-            [](double x, double y) { return std::atan2(x, y); }),
-      entry("hypot", "the length of (x, y)", [](double x, double y) { return std::hypot(x, y); }),
-      entry("floor", "rounded down", [](double x) { return std::floor(x); }),
-      entry("ceil", "rounded up", [](double x) { return std::ceil(x); }),
+      entry("sqrt", [](double x) { return std::sqrt(x); }),
+      entry("sin", [](double x) { return std::sin(x); }),
+      entry("cos", [](double x) { return std::cos(x); }),
+      entry("tan", [](double x) { return std::tan(x); }),
+      entry("atan2", [](double x, double y) { return std::atan2(x, y); }),
+      entry("hypot", [](double x, double y) { return std::hypot(x, y); }),
+      entry("floor", [](double x) { return std::floor(x); }),
+      entry("ceil", [](double x) { return std::ceil(x); }),
   };
   return all_functions;
 }

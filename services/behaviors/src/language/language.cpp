@@ -64,19 +64,4 @@ Compiled compile(std::string_view text, const std::string& file) {
   return out;
 }
 
-std::vector<std::string> language_functions() {
-  std::vector<std::string> lines;
-  for (const language::Function& function : language::functions()) {
-    std::string line(function.name);
-    line += '(';
-    for (const language::Type type : function.arguments)
-      line += (line.back() == '(' ? "" : ", ") + std::string(type == language::Type::point ? "point"
-                                                             : type == language::Type::integer
-                                                                 ? "int"
-                                                                 : "float");
-    lines.push_back(line + "): " + function.meaning);
-  }
-  return lines;
-}
-
 }  // namespace saphira::behaviors

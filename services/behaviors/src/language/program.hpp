@@ -44,7 +44,6 @@ struct Function {
   Type result;
   std::vector<Type> arguments;
   void (*call)(Call&, const double* arguments, double* result);
-  const char* meaning;
 };
 
 const std::vector<Function>& functions();

@@ -39,7 +39,7 @@ class ContactWatch {
   /// The scene outlives this object.
   ContactWatch(const Scene& scene, RobotNumber robot, const protocol::RobotParameters& parameters);
 
-  /// After every tick of the scene (Scene::set_watch).
+  /// After every tick of the scene.
   void tick();
 
   const std::vector<Contact>& contacts() const { return contacts_; }

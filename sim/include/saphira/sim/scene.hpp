@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -108,8 +107,6 @@ class Scene {
                    std::uint64_t seed);
 
   void tick();
-  /// An observer of the truth after every tick (contacts.hpp).
-  void set_watch(std::function<void()> watch) { watch_ = std::move(watch); }
   std::uint64_t ticks() const { return ticks_; }  ///< since the beginning
 
   const World& world() const { return *world_; }
@@ -195,7 +192,6 @@ class Scene {
   std::vector<Ping> pings_;
   double fastest_ = 0.0;
   std::uint64_t ticks_ = 0;
-  std::function<void()> watch_;
 };
 
 }  // namespace saphira::sim

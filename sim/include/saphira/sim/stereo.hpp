@@ -23,8 +23,7 @@ struct GreyImage {
 };
 
 /// A pinhole camera, parallel to the floor; a head may turn it. Pictures as large as Flakey's
-/// (Konolige and others 1996, Figure 3); the paper gives no other figures, so the rest is that of
-/// StereoCamera.
+/// (Konolige and others 1996, Figure 3); the paper gives no other figures.
 struct PinholeCamera {
   Pose pose_in_robot;
   double height = 1.0;                   ///< [m] above the floor

@@ -21,7 +21,4 @@ struct Compiled {
 /// Compiles the behaviors of a text. `file` is its name in messages.
 Compiled compile(std::string_view text, const std::string& file);
 
-/// For people: every function that Update and Init can call, a line each.
-std::vector<std::string> language_functions();
-
 }  // namespace saphira::behaviors
