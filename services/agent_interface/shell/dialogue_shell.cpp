@@ -27,9 +27,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
-constexpr const char* kConsole = "console";  // its messages are about its files
-constexpr double kConfirmsWithin = 2.0;      // [s] the bridge, a stop
-constexpr std::size_t kLongestName = 31;     // [bytes] of a speaker
+constexpr double kConfirmsWithin = 2.0;   // [s] the bridge, a stop
+constexpr std::size_t kLongestName = 31;  // [bytes] of a speaker
+
+/// The source of a message of an activity has its service and its intention: "intentions: ask".
+bool is_of_activity(const v1::Message& message) {
+  return message.source.find(": ") != std::string::npos;
+}
 
 }  // namespace
 
@@ -42,6 +46,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       goals_(node, kName),
       registration_(node, bus::topics::kRegistrationRequest, kName),
       stops_(node, bus::topics::kDriveStop, kName),
+      solver_(node, bus::topics::kSolve, kName),
       audit_(node) {
   folder_.poll();
   if (!options_.memory.empty()) {
@@ -176,6 +181,14 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
     want(goal);
   for (const Claimed& one : out.claims)
     claim(one);
+  for (const OpenQuestion& one : out.asks)
+    solver_.send(
+        to_bus(one.request),
+        [this, one](const v1::Answer& answer) {
+          if (bus::ended(answer.code))
+            perform(dialogue_.answered_by(one, answer.service, saphira::from_bus(answer)));
+        },
+        kAgentsPatience);
   for (const maps::Feature& feature : out.namings)
     registration_.send(to_bus(put_on_map(feature)));
   if (!out.note.empty())
@@ -252,6 +265,24 @@ void DialogueShell::take_beliefs() {
   const double age =
       std::exchange(knows_beliefs_, true) || node_.options().lockstep ? 0.0 : sets.back().info.age;
   perform(dialogue_.found(heed(sets.back().data, age, situation_), situation_.now));
+}
+
+/// The facts that other programs announce.
+void DialogueShell::take_agents() {
+  for (const auto& sample : agents_.take())
+    if (sample.info.disposed)
+      known_agents_.erase(sample.info.writer);
+    else if (sample.data.name != kName)
+      known_agents_[sample.info.writer] = sample.data;
+  for (const bus::WriterId& writer : agents_.take_lost())
+    known_agents_.erase(writer);
+  situation_.agents.clear();
+  for (const auto& [writer, agent] : known_agents_)
+    for (const v1::Capability& one : agent.capabilities)
+      if (!one.acts) {
+        std::string& names = situation_.agents[one.functor];
+        names += (names.empty() ? "" : " and ") + agent.name;
+      }
 }
 
 /// Of the robot, and of a person who points.
@@ -339,6 +370,7 @@ void DialogueShell::step(double seconds, double now) {
     node_.status().reason = "";
   }
   take_places();
+  take_agents();
   if (!grants_.take_lost().empty())
     situation_.estop.clear();
   if (const auto grant = grants_.take_newest()) {
@@ -348,11 +380,12 @@ void DialogueShell::step(double seconds, double now) {
   registration_.poll(seconds);
   take_beliefs();
   for (const auto& sample : messages_.take())
-    if (!sample.info.disposed && sample.data.source != kConsole)
+    if (!sample.info.disposed && is_of_activity(sample.data))
       perform(dialogue_.says(sample.data.text, {sample.data.stamp.epoch, sample.data.stamp.cycle}));
   take_goals(seconds);
   perform(dialogue_.come_due(situation_));
   stops_.poll(seconds);
+  solver_.poll(seconds);
   take_utterances();
   agent_.poll();
 }

@@ -42,6 +42,7 @@ class DialogueShell {
   void adopt(std::uint64_t tag, const v1::GoalId& id);
   void take_beliefs();
   void take_places();
+  void take_agents();
   void take_utterances();
   std::vector<KnownGoal> known_goals() const;
   void perform(const Dialogue::Outputs& out);
@@ -60,6 +61,7 @@ class DialogueShell {
   bus::GoalClient goals_;
   bus::RequestClient registration_;
   bus::RequestClient stops_;
+  bus::RequestClient solver_;
   bus::Reader<v1::Utterance> heard_ = node_.reader(bus::topics::kHeard);
   bus::Reader<v1::Goal> wanted_ = node_.reader(bus::topics::kGoals);
   bus::Reader<v1::Message> messages_ = node_.reader(bus::topics::kMessages);
@@ -68,6 +70,8 @@ class DialogueShell {
   bus::Held<v1::FloorMap> maps_{node_.reader(bus::topics::kMap)};
   bus::Reader<v1::Vision> visions_ = node_.reader(bus::topics::kVision);
   bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
+  bus::Reader<v1::Agent> agents_ = node_.reader(bus::topics::kAgents);
+  std::map<bus::WriterId, v1::Agent> known_agents_;
   bool knows_beliefs_ = false;
   bus::Reader<v1::RobotDescription> robots_ = node_.reader(bus::topics::kRobotDescription);
   bus::Writer<v1::Utterance> said_ = node_.writer(bus::topics::kSaid);

@@ -40,7 +40,8 @@ Meaning with_place(Meaning meaning, const std::string& place) {
 
 /// Puts a name in the place of another in all steps.
 void rename(Grammar::Understood& understood, const std::string& from, const std::string& to) {
-  for (std::vector<Meaning>* const steps : {&understood.meanings, &understood.then})
+  for (std::vector<Meaning>* const steps :
+       {&understood.meanings, &understood.then, &understood.during})
     for (Meaning& step : *steps)
       for (auto& [slot, value] : step.slots)
         if (value == from)
@@ -120,6 +121,7 @@ void Dialogue::prefer_answer(Grammar::Understood& understood, const Question* qu
        meanings.front().functor == "talk" || slot(meanings.front(), "object") == "it")) {
     meanings = {*understood.answer};
     understood.then.clear();
+    understood.during.clear();
     understood.apart.clear();
   } else if (situation.asked_about.empty() &&
              (question == nullptr || (!question->asked && question->names.empty())) &&

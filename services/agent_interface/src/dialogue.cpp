@@ -18,6 +18,7 @@ constexpr double kCertain = 0.8;      // at a lower one the robot asks back befo
 constexpr double kAhead = 10.0;       // [m] of the point to turn to
 constexpr double kLongestWay = 20.0;  // [m] that one command of motion may take
 constexpr double kOld = 60.0;         // [s] after which an utterance is too old to act on
+constexpr double kLate = 600.0;       // [s] after its time, an order for later is not begun
 constexpr std::size_t kHeard = 256;
 constexpr std::size_t kLongestText = 255;  // letters: as long as an argument of a goal
 /// Goals that interrupt a task for a moment.
@@ -56,9 +57,16 @@ bool name_speaker(Grammar::Understood& understood, const std::string& speaker) {
       }
   };
   for (std::vector<Meaning>* const steps :
-       {&understood.meanings, &understood.then, &understood.apart})
+       {&understood.meanings, &understood.then, &understood.apart, &understood.during})
     std::for_each(steps->begin(), steps->end(), name);
   return named;
+}
+
+/// Facts about a thing are those about a person with the name "the printer".
+void name_things(std::vector<Meaning>& meanings) {
+  for (Meaning& meaning : meanings)
+    if (const auto thing = meaning.slots.extract("thing"))
+      meaning.slots["person"] = "the " + thing.mapped();
 }
 
 }  // namespace
@@ -120,13 +128,16 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, const Si
       refuse(utterance, "that is no turn", out);
       return true;
     }
-    if (degrees > 180.0) {
-      refuse(utterance, "no: I turn by 180 degrees at a time at most", out);
+    if (degrees > 360.0) {
+      refuse(utterance, "no: I turn by 360 degrees at a time at most", out);
       return true;
     }
-    const double angle = degrees / 180.0 * std::numbers::pi;
-    want(meaning, utterance, "turn_to",
-         {point_ahead(kAhead, slot(meaning, "direction") == "right" ? -angle : angle)});
+    const int parts = degrees > 180.0 ? 2 : 1;  // a point has no way around to it
+    const double angle = degrees / parts / 180.0 * std::numbers::pi;
+    for (int i = 0; i < parts; ++i)
+      want(parts > 1 ? with(meaning, "degrees", plain(degrees / parts)) : meaning, utterance,
+           "turn_to",
+           {point_ahead(kAhead, slot(meaning, "direction") == "right" ? -angle : angle)});
   } else if (meaning.functor == "look") {
     const std::string direction = slot(meaning, "direction");
     const double angle = direction == "left"    ? std::numbers::pi / 2.0
@@ -185,6 +196,15 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
       out.unknown = {};
       want(with(meaning, "place", name), utterance, "find-person", {text("name", name)});
     }
+  } else if (functor == "face") {
+    const std::string where = place_or_refusal(meaning, utterance, situation, out);
+    const maps::Feature* const spot =
+        situation.pose_in_map && !where.empty() ? nearest_of(where, situation) : nullptr;
+    if (spot != nullptr)
+      want(with(with(meaning, "place", where), "owner", ""), utterance, "turn_to",
+           {point("position", Pose(spot->pose_in_map.x, spot->pose_in_map.y, 0.0), Frame::map)});
+    else if (!where.empty())
+      refuse(utterance, kLost, out);
   } else if (functor == "deliver" || functor == "fetch") {
     const bool here = functor == "fetch";
     const char* const owner = here ? "person" : "from";
@@ -192,7 +212,9 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
     const bool aboard = is_aboard(object, situation);
     const Advice* const known = knowledge_.find(Advice::Kind::has, object);
     const bool told = known != nullptr && known->value != named_person("");
-    const std::string from = slot(meaning, owner).empty() && told ? known->value : whom(owner);
+    std::string from = slot(meaning, owner).empty() && told ? known->value : whom(owner);
+    if (from.empty())
+      from = place(slot(meaning, "object"), situation);
     const std::string to = here ? bring_to(utterance, situation) : whom("to");
     if (to.empty()) {
       refuse(utterance, "I do not know where to bring it: where I am has no name", out);
@@ -323,7 +345,11 @@ void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Sit
       correction(meaning, utterance, situation, out) ||
       naming(meaning, utterance, situation, out) || reply(meaning, utterance, situation, out))
     return;
-  refuse(utterance, "I understand " + meaning.functor + ", and do not know how to do it", out);
+  Request question{meaning.functor, {}};
+  for (const auto& [name, value] : meaning.slots)
+    question.arguments.push_back(value.empty() ? open_slot(name) : text(name, value));
+  if (!ask_agents(std::move(question), "", utterance, situation, out))
+    refuse(utterance, "I understand " + meaning.functor + ", and do not know how to do it", out);
 }
 
 void Dialogue::add(Tasks::Outputs more, Outputs& out) {
@@ -340,6 +366,10 @@ void Dialogue::add(Tasks::Outputs more, Outputs& out) {
 void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance& utterance,
                           const Situation& situation, Outputs& out) {
   wanted_.clear();
+  Rules rules;
+  for (const Meaning& rule : understood.during)
+    if (!add_rule(rule, utterance, situation, rules, out))
+      return;
   act(understood.meanings.front(), utterance, situation, out);
   for (const Meaning& meaning : understood.then) {
     const std::size_t before = wanted_.size();
@@ -349,11 +379,16 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
     if (wanted_.size() == before)
       return;
   }
+  for (Task& task : wanted_)
+    task.rules = rules;
   for (const Task& task : wanted_)
     if (const std::string why = hindrance(task.goal, situation, out); !why.empty()) {
+      wanted_.clear();
       refuse(utterance, why, out);
       return;
     }
+  if (!wanted_.empty())
+    wanted_.back().what += rules.text;
   if (understood.timed && situation.now > 0.0) {
     const double seconds = wanted_.front().goal.arguments.front().number;
     wanted_.erase(wanted_.begin());
@@ -372,21 +407,33 @@ Dialogue::Outputs Dialogue::granted(const v1::Grant& grant, std::uint64_t self) 
 }
 
 Dialogue::Outputs Dialogue::come_due(const Situation& situation) {
-  Outputs out;
-  tasks_.heed(front(situation));
+  return changing([&](Outputs& out) { begin_due(situation, out); });
+}
+
+void Dialogue::begin_due(const Situation& situation, Outputs& out) {
+  wanted_.clear();
+  const auto front = this->front(situation);
+  if (pace_ && pace_->for_others && !front)
+    pace_.reset();
+  tasks_.heed(front);
   tell_of_waiting(situation, out);
   for (Tasks::Later& one : tasks_.take_due(situation.now)) {
+    out.changed = true;
     one.order.time = situation.now;
-    std::string why;
+    std::string why =
+        situation.now - one.time > kLate
+            ? "it is too late for that: " + time_text(one.time) + one.steps.front().what
+            : std::string();
+    wanted_ = one.steps;
     for (const Task& step : one.steps)
       if (why.empty())
         why = hindrance(step.goal, situation, out);
+    wanted_.clear();
     if (why.empty())
       begin(std::move(one.steps), false, one.order, situation, out);
     else
       refuse(one.order, why, out);
   }
-  return out;
 }
 
 void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utterance,
@@ -394,6 +441,14 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
   const bool goes_on = std::all_of(steps.begin(), steps.end(), [](const Task& step) {
     return step.brief && step.goal.functor != "stop";
   });
+  if (pace_ && !steps.empty() && same_person(pace_->speaker, utterance.speaker) &&
+      steps.front().goal.functor != "stop") {
+    for (Task& step : steps) {
+      step.rules.slow = true;
+      step.rules.source = pace_->source;
+    }
+    pace_.reset();
+  }
   Tasks::Outputs begun = tasks_.want(std::move(steps), utterance, drops);
   if (!begun.asks.empty()) {
     Question question;
@@ -416,15 +471,18 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
 }
 
 Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& situation) {
-  Outputs out;
+  return changing([&](Outputs& out) { take_in(utterance, situation, out); });
+}
+
+void Dialogue::take_in(const Utterance& utterance, const Situation& situation, Outputs& out) {
   // A living writer repeats its earlier sentences to a new reader.
   if (situation.now > 0.0 && utterance.time > 0.0 && situation.now - utterance.time > kOld) {
     out.note = "not acted on, since it is older than a minute: " + quoted(utterance.text);
-    return out;
+    return;
   }
   if (utterance.id != UtteranceId{}) {
     if (std::find(heard_.begin(), heard_.end(), utterance.id) != heard_.end())
-      return out;
+      return;
     heard_.push_back(utterance.id);
     if (heard_.size() > kHeard)
       heard_.erase(heard_.begin());
@@ -437,6 +495,7 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   const bool answers = question != nullptr && question->asked;
   const bool certain = utterance.confidence >= kCertain && utterance.text.size() <= kLongestText;
   Grammar::Understood understood = grammar_.understand(utterance.text, asked || answers);
+  name_things(understood.meanings);
   prefer_answer(understood, question, situation);
   const bool corrects = question != nullptr && !question->asked &&
                         (!asked || (understood.meanings.size() == 1 &&
@@ -450,21 +509,23 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
   };
   // "No, right" after "turn left 30 degrees" is no turn of its own.
   const std::vector<std::string> words = words_of(utterance.text);
-  const bool denies = std::find(words.begin(), words.end(), "no") != words.end();
+  constexpr std::array kNo{"no", "nope", "nah"};
+  const bool denies =
+      std::find_first_of(words.begin(), words.end(), kNo.begin(), kNo.end()) != words.end();
   if (corrects && certain && understood.addressed &&
       (understood.meanings.empty() ||
        (denies && understood.meanings.front().functor == "to_place") ||
        understood.meanings.front().functor == question->sentence.meanings.front().functor) &&
       as_correction(*question))
-    return out;
+    return;
   if ((answers || corrects) && certain &&
       answered(*question, understood, utterance, situation, out))
-    return out;
+    return;
   // The task under way may be corrected after other sentences, too.
   if (certain && !answers && understood.addressed && understood.meanings.empty() && order_ &&
       tasks_.task() != nullptr && tasks_.task()->answers == order_->raised_by.id &&
       same_person(utterance.speaker, order_->raised_by.speaker) && as_correction(*order_))
-    return out;
+    return;
   leave_out(understood, situation);
   // Another sentence of that speaker ends the robot's question. What was not understood may be said
   // once more.
@@ -477,7 +538,7 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
     std::erase_if(understood.meanings, [](const Meaning& one) { return one.functor != "stop"; });
     if (meant && understood.meanings.empty()) {
       refuse(utterance, "that is too long for me", out);
-      return out;
+      return;
     }
   }
   // A word alone may be to somebody else.
@@ -488,14 +549,14 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
                           claim_source(utterance)});
   }
   if (!understood.addressed && understood.meanings.empty())
-    return out;  // people talk to each other
+    return;  // people talk to each other
+  const std::string present = tasks_.going_on(utterance.speaker);
   if (!asked && denies && understood.bare.size() == 1 && understood.meanings.empty() &&
-      understood.bare.front().functor == "no" && !tasks_.empty())
+      understood.bare.front().functor == "no" && !(tasks_.empty() && present.empty()))
     understood.meanings = {{"stop", {}}};  // "no!"
   const bool stops =
       understood.meanings.size() == 1 && (understood.meanings.front().functor == "stop" ||
                                           understood.meanings.front().functor == kHold);
-  const std::string present = tasks_.going_on(utterance.speaker);
   // A stop too many costs less than one that was missed.
   if (understood.meanings.empty() || (utterance.confidence < kSure && !stops))
     refuse(utterance,
@@ -504,7 +565,6 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
     ask_again(std::move(understood), utterance, out);
   else
     carry_out(std::move(understood), utterance, situation, out);
-  return out;
 }
 
 void Dialogue::carry_out(Grammar::Understood understood, const Utterance& utterance,
@@ -531,11 +591,11 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
 }
 
 Dialogue::Outputs Dialogue::left(const ProgramId& program) {
-  Outputs out;
   std::erase_if(questions_, [&](const Question& one) { return one.raised_by.program == program; });
-  add(tasks_.left(program), out);
-  out.changed = !out.canceled.empty();
-  return out;
+  return changing([&](Outputs& out) {
+    add(tasks_.left(program), out);
+    out.changed = !out.canceled.empty();
+  });
 }
 
 void Dialogue::end(const Outcome& outcome, Outputs& out) {
@@ -547,13 +607,11 @@ void Dialogue::end(const Outcome& outcome, Outputs& out) {
 }
 
 Dialogue::Outputs Dialogue::ended(const Outcome& outcome) {
-  Outputs out;
-  end(outcome, out);
-  return out;
+  return changing([&](Outputs& out) { end(outcome, out); });
 }
 
 Dialogue::Outputs Dialogue::without_status(const std::vector<std::uint64_t>& tags, double seconds) {
-  Outputs out;
+  std::vector<std::uint64_t> late;
   const std::map<std::uint64_t, double> before = std::exchange(without_status_, {});
   for (const std::uint64_t tag : tags) {
     const auto known = before.find(tag);
@@ -562,11 +620,17 @@ Dialogue::Outputs Dialogue::without_status(const std::vector<std::uint64_t>& tag
       without_status_[tag] = since;
       continue;
     }
-    out.canceled.push_back(tag);
-    out.why = kNotTakenUp;
-    end({tag, false, kNotTakenUp}, out);
+    late.push_back(tag);
   }
-  return out;
+  if (late.empty())
+    return {};
+  return changing([&](Outputs& out) {
+    for (const std::uint64_t tag : late) {
+      out.canceled.push_back(tag);
+      out.why = kNotTakenUp;
+      end({tag, false, kNotTakenUp}, out);
+    }
+  });
 }
 
 Dialogue::Outputs Dialogue::says(const std::string& text, const CycleRef& when) {
@@ -586,6 +650,7 @@ Dialogue::Outputs Dialogue::says(const std::string& text, const CycleRef& when) 
 
 void Dialogue::archive(Archive& a) {
   a("knowledge", knowledge_)("heard", heard_)("gone", gone_)("said", said_)("tasks", tasks_);
+  a("began", began_)("pace", pace_);
   if (a.restores())
     before_ = said_;
 }

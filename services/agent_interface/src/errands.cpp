@@ -51,18 +51,48 @@ void Dialogue::go_back(const Meaning& meaning, const Utterance& utterance,
     refuse(utterance, "I do not know where that is: my map has no place called home or start", out);
 }
 
-/// Slower holds for all that it does, until it is told to go faster.
+/// Slower holds until what the robot does has ended; where it does nothing, for the speaker's next
+/// order.
 void Dialogue::change_pace(bool slower, const Utterance& utterance, const Situation& situation,
-                           Outputs& out) const {
-  if (slower) {
-    out.claims.push_back({kPace, "slow", claim_source(utterance)});
-    say(utterance, situation.is_slow ? "I go slowly already" : "I go slowly", true, out);
-  } else if (situation.is_slow) {
-    out.claims.push_back({kPace, "", ""});
+                           Outputs& out) {
+  const std::vector<Claimed> before = claims();
+  const bool others = front(situation).has_value();
+  pace_.reset();
+  const std::string names = tasks_.set_pace(slower, claim_source(utterance), utterance.speaker);
+  if (slower && names.empty())
+    pace_ = Pace{utterance.speaker, claim_source(utterance), others};
+  const bool was = std::ranges::find(before, kPace, &Claimed::name) != before.end();
+  if (slower)
+    say(utterance,
+        situation.is_slow ? "I go slowly already"
+                          : "I go slowly until " + (!names.empty() ? names + " ends"
+                                                    : others       ? "that ends"
+                                                                   : "your next order ends"),
+        true, out);
+  else if (was)
     say(utterance, "I go as fast as before", true, out);
-  } else {
-    refuse(utterance, "I go no faster than the task asks for", out);
+  else
+    refuse(utterance,
+           situation.is_slow ? "another program wants me to go slowly"
+                             : "I go no faster than the task asks for",
+           out);
+}
+
+bool Dialogue::add_rule(const Meaning& meaning, const Utterance& utterance,
+                        const Situation& situation, Rules& rules, Outputs& out) const {
+  if (meaning.functor == "pace") {
+    rules.slow = true;
+    rules.text += ", slowly";
+  } else if (meaning.functor == "hazard") {
+    const std::string place = place_or_refusal(meaning, utterance, situation, out);
+    if (place.empty())
+      return false;
+    const std::string kind = slot(meaning, "kind");
+    rules.zones.push_back(kind + " at " + place);
+    rules.text += (kind == "preferred" ? ", preferably through " : ", but not through ") + place;
   }
+  rules.source = claim_source(utterance);
+  return true;
 }
 
 /// The next time that the clock shows that. Without "am" or "pm" an hour up to eleven is of either
@@ -109,13 +139,7 @@ bool Dialogue::errand(const Meaning& meaning, const Utterance& utterance,
   const std::string& functor = meaning.functor;
   // A place that the sentence names, or that of an owner; empty, and said, where there is none.
   const auto where = [&](const char* name) {
-    Meaning referring = with(meaning, "place", slot(meaning, name));
-    std::uint32_t artifact = 0;
-    std::string wrong;
-    const std::string found = referred(referring, situation, out, artifact, wrong);
-    if (found.empty())
-      refuse(utterance, wrong, out);
-    return found;
+    return place_or_refusal(with(meaning, "place", slot(meaning, name)), utterance, situation, out);
   };
   const auto back = [&] { return text("back", bring_to(utterance, situation)); };
   if (functor == "take_way") {

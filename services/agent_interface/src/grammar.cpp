@@ -13,6 +13,7 @@ constexpr std::size_t kLongestUtterance = 40;  // words; a longer one is no comm
 constexpr std::size_t kLongestName = 4;        // words: "EJ two thirty one"
 constexpr std::size_t kMostMatches = 1000;
 constexpr std::size_t kMostSteps = 8;  // of a sequence
+constexpr int kMostAsides = 3;         // of an order
 /// Units behind a number without a blank, and their words in the grammars.
 constexpr std::array<std::pair<const char*, const char*>, 7> kUnits{{{"m", "meters"},
                                                                      {"cm", "cm"},
@@ -156,24 +157,6 @@ std::string joined(const std::vector<std::string>& words, std::size_t from) {
 bool has_rest(const Grammar::Node& node) {
   return node.kind == Grammar::Node::Kind::rest ||
          std::any_of(node.parts.begin(), node.parts.end(), has_rest);
-}
-
-/// The number of words and commas there that join two sentences: a comma, "and", "then", ", and
-/// after that,"; 0: none.
-std::size_t joint(const std::vector<std::string>& words, std::size_t at) {
-  std::size_t next = at;
-  const auto take = [&](std::string_view word) {
-    const bool is = next < words.size() && words[next] == word;
-    next += is ? 1U : 0U;
-    return is;
-  };
-  take(kComma);
-  take("and");
-  if (!take("then") && !take("afterwards") && take("after") && !take("that"))
-    --next;
-  if (next > at)
-    take(kComma);
-  return next - at;
 }
 
 }  // namespace
@@ -356,7 +339,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
   const auto whole = [&](const std::vector<std::string>& sentence) {
-    result.meanings = look(without_commas(sentence), result.addressed, replies, Among::usual);
+    result.meanings = look(without_commas(sentence), result.addressed, replies, Use::command);
     if (!result.addressed)
       return;
     // Of several ways to divide it, the one with the fewest steps.
@@ -378,31 +361,33 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     if (!ways.empty() && takes_text(last.functor))
       result.apart = ways.front();
   };
-  // "In ten minutes go home", "go home at five": the time is the first step.
-  const auto timed = [&](const std::vector<std::string>& sentence) {
-    for (std::size_t i = 1; i < sentence.size(); ++i)
-      for (const bool ahead : {true, false}) {
-        const auto middle = sentence.begin() + static_cast<std::ptrdiff_t>(i);
-        std::vector<std::string> time(sentence.begin(), middle);
-        std::vector<std::string> rest(middle, sentence.end());
-        if (!ahead)
-          std::swap(time, rest);
-        const std::vector<Meaning> when = look(without_commas(time), true, false, Among::timed);
-        if (when.size() != 1 || without_commas(rest).empty())
-          continue;
-        if (rest.front() == kComma)
-          rest.erase(rest.begin());
-        whole(rest);
-        if (result.meanings.size() == 1 && is_step(result.meanings.front())) {
-          result.then.insert(result.then.begin(), result.meanings.front());
-          result.meanings = when;
-          result.timed = true;
-          result.apart.clear();
-          return;
+  // "In ten minutes go home", "go home at five", "go home, but not through the lobby".
+  const auto with_asides = [&](const auto& again, const std::vector<std::string>& sentence,
+                               int others) -> bool {
+    for (const Use use : {Use::timed, Use::during})
+      for (auto& [aside, rest] : asides(sentence, use)) {
+        if (others > 0) {
+          if (!again(again, rest, others - 1))
+            continue;
+        } else {
+          whole(rest);
+          if (result.meanings.size() != 1 || !is_step(result.meanings.front())) {
+            result.meanings.clear();
+            result.then.clear();
+            continue;
+          }
         }
-        result.meanings.clear();
-        result.then.clear();
+        if (use == Use::during) {
+          result.during.push_back(aside);
+        } else {
+          result.then.insert(result.then.begin(), result.meanings.front());
+          result.meanings = {aside};
+          result.timed = true;
+        }
+        result.apart.clear();
+        return true;
       }
+    return false;
   };
   std::vector<std::string> order = said;
   if (words.size() <= kLongestUtterance) {
@@ -418,12 +403,13 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     }
   }
   if (result.meanings.empty() && words.size() <= kLongestUtterance)
-    result.meanings = look(words, result.addressed, replies, Among::reply);
+    result.meanings = look(words, result.addressed, replies, Use::reply);
   if (result.meanings.empty() && urgent.meaning)
     result.meanings = {*urgent.meaning};
   else if (result.meanings.empty() && result.addressed)
-    timed(order);
-  const std::vector<Meaning> as_reply = look(words, false, true, Among::reply);
+    for (int others = 0; others < kMostAsides && !with_asides(with_asides, order, others);)
+      ++others;
+  const std::vector<Meaning> as_reply = look(words, false, true, Use::reply);
   if (result.meanings.empty() && result.addressed)
     result.bare = as_reply;
   else if (replies && as_reply.size() == 1)
@@ -456,22 +442,17 @@ bool Grammar::make_plain_order(std::vector<std::string>& words) const {
 }
 
 std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool addressed,
-                                   bool replies, Among among) const {
+                                   bool replies, Use use) const {
   std::vector<Meaning> meanings;
   std::size_t best = 0;
   for (const Rule& rule : rules_) {
-    const Among of = rule.use == Use::urgent  ? Among::urgent
-                     : rule.use == Use::reply ? Among::reply
-                     : rule.use == Use::later ? Among::later
-                     : rule.use == Use::timed ? Among::timed
-                     : rule.use == Use::alone ? Among::alone
-                                              : Among::usual;
-    if (of != among || (rule.use == Use::reply ? !replies : !addressed))
+    const bool same = rule.use == use || (use == Use::command && rule.use == Use::typed);
+    if (!same || (use == Use::reply ? !replies : !addressed))
       continue;
     for (const Node& pattern : rule.patterns)
       for (const Match& match : this->match(pattern, words, {})) {
         // A mere name is a reply, not a word to the robot by its name.
-        if ((match.end != words.size() && among != Among::urgent) || match.literal < best ||
+        if ((match.end != words.size() && use != Use::urgent) || match.literal < best ||
             (match.literal == 0 && addressed))
           continue;
         Meaning meaning = rule.meaning;
@@ -517,36 +498,92 @@ std::vector<std::string> Grammar::completed(const std::vector<std::string>& befo
   return whole;
 }
 
+std::vector<std::pair<Meaning, std::vector<std::string>>> Grammar::asides(
+    const std::vector<std::string>& words, Use use) const {
+  std::vector<std::pair<Meaning, std::vector<std::string>>> found;
+  const auto note = [&](std::size_t from, std::size_t to) {
+    const auto at = [&](std::size_t i) { return words.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::vector<Meaning> meanings =
+        look(without_commas({at(from), at(to)}), true, false, use);
+    std::vector<std::string> rest(words.begin(), at(from));
+    rest.insert(rest.end(), at(to), words.end());
+    while (!rest.empty() && rest.front() == kComma)
+      rest.erase(rest.begin());
+    if (meanings.size() == 1 && !rest.empty())
+      found.emplace_back(meanings.front(), std::move(rest));
+  };
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    note(0, i);
+    note(i, words.size());
+  }
+  for (std::size_t i = 1; use == Use::during && i + 1 < words.size(); ++i)
+    for (std::size_t end = i + 1; end < words.size(); ++end)
+      note(i, end);  // "go slowly to the lobby"
+  return found;
+}
+
+/// The number of words and commas there that join two sentences: a comma, "and", "then", ", and
+/// after that,"; 0: none.
+std::size_t Grammar::joint(const std::vector<std::string>& words, std::size_t at) const {
+  std::size_t next = at;
+  const auto take = [&](std::string_view word) {
+    const bool is = next < words.size() && words[next] == word;
+    next += is ? 1U : 0U;
+    return is;
+  };
+  take(kComma);
+  take("and");
+  for (const auto& phrase : joints_)  // "then finally", too
+    if (words.size() - next >= phrase.size() &&
+        std::equal(phrase.begin(), phrase.end(), words.begin() + static_cast<std::ptrdiff_t>(next)))
+      next += phrase.size();
+  if (next > at)
+    take(kComma);
+  return next - at;
+}
+
+std::vector<Meaning> Grammar::steps_in(std::vector<std::string>& sentence,
+                                       const std::vector<std::string>& before) const {
+  sentence = without_commas(std::move(sentence));
+  if (sentence.empty())
+    return {};
+  std::vector<Meaning> meanings;
+  if (!before.empty())
+    meanings = look(sentence, true, false, Use::later);
+  if (meanings.empty())
+    meanings = look(sentence, true, false, Use::command);
+  const auto one_step = [&] { return meanings.size() == 1 && is_step(meanings.front()); };
+  if (auto all = completed(before, sentence);
+      !all.empty() && (!one_step() || sentence.size() == 1)) {
+    std::vector<Meaning> again = look(all, true, false, Use::command);
+    if (!one_step() || !again.empty()) {
+      if (again.size() == 1 && takes_text(again.front().functor))
+        return {};
+      meanings = std::move(again);
+      sentence = std::move(all);
+    }
+  }
+  if (one_step())
+    return meanings;
+  if (meanings.empty())
+    for (auto& [often, rest] : asides(sentence, Use::times))
+      if (meanings = steps_in(rest, before); meanings.size() == 1) {
+        const auto times = static_cast<std::size_t>(std::min(number_of(often, "count"), 99.0));
+        sentence = std::move(rest);
+        return std::vector<Meaning>(times, meanings.front());
+      }
+  return {};
+}
+
 std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string>& words,
                                                    const std::vector<std::string>& before,
                                                    bool runs_on) const {
   std::vector<std::vector<Meaning>> ways;
   const bool first = before.empty();
-  const auto step = [&](std::vector<std::string>& sentence) -> std::optional<Meaning> {
-    sentence = without_commas(std::move(sentence));
-    if (sentence.empty())
-      return std::nullopt;
-    std::vector<Meaning> meanings;
-    if (!first)
-      meanings = look(sentence, true, false, Among::later);
-    if (meanings.empty())
-      meanings = look(sentence, true, false, Among::usual);
-    const auto one_step = [&] { return meanings.size() == 1 && is_step(meanings.front()); };
-    if (auto all = completed(before, sentence);
-        !all.empty() && (!one_step() || sentence.size() == 1)) {
-      std::vector<Meaning> again = look(all, true, false, Among::usual);
-      if (!one_step() || !again.empty()) {
-        if (again.size() == 1 && takes_text(again.front().functor))
-          return std::nullopt;
-        meanings = std::move(again);
-        sentence = std::move(all);
-      }
-    }
-    return one_step() ? std::optional(meanings.front()) : std::nullopt;
-  };
-  if (std::vector<std::string> all = words; !first)
-    if (const auto last = step(all))
-      ways.push_back({*last});
+  std::vector<std::string> all = words;
+  if (std::vector<Meaning> last = steps_in(all, before);
+      last.size() > (first ? 1U : 0U) && last.size() <= kMostSteps)
+    ways.push_back(std::move(last));
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
     const std::size_t between = joint(words, i);
     if (i + between >= words.size() || joint(words, i - 1) > 1)
@@ -556,12 +593,12 @@ std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string
       continue;
     const auto at = words.begin() + static_cast<std::ptrdiff_t>(i);
     std::vector<std::string> sentence(words.begin(), at);
-    const auto head = step(sentence);
-    if (!head)
+    const std::vector<Meaning> head = steps_in(sentence, before);
+    if (head.empty())
       continue;
     const auto next = at + static_cast<std::ptrdiff_t>(between);
     for (std::vector<Meaning>& rest : divided({next, words.end()}, sentence, runs_on)) {
-      rest.insert(rest.begin(), *head);
+      rest.insert(rest.begin(), head.begin(), head.end());
       if (rest.size() <= kMostSteps)
         ways.push_back(std::move(rest));
     }
@@ -642,8 +679,8 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
   for (const std::string& keyword : keywords_)
     maker.graph.arcs.push_back({WordGraph::kStart, WordGraph::kAddressed, keyword});
   for (const Rule& rule : rules_)
-    if (rule.use != Use::typed && rule.use != Use::later && rule.use != Use::timed &&
-        (rule.use != Use::reply || replies))
+    if (rule.use == Use::command || rule.use == Use::urgent || rule.use == Use::alone ||
+        (rule.use == Use::reply && replies))
       for (const Node& pattern : rule.patterns)
         if (pattern.kind == Node::Kind::choice || !has_rest(pattern))
           maker.lead(pattern,

@@ -92,8 +92,8 @@ class Grammar::Reader {
     const std::size_t from = at_;
     const std::string first = word(
         "keyword, greetings, verbs, names, no-names, alarms, not-behind, passed, not-after, steps, "
-        "polite, "
-        "list, typed, reply, urgent, alone, later, timed or a functor");
+        "joints, polite, "
+        "list, typed, reply, urgent, alone, later, timed, during, times or a functor");
     if (std::vector<std::string>* const some = words_named(first)) {
       expect(':');
       while (at_ < line_.size()) {
@@ -117,10 +117,10 @@ class Grammar::Reader {
         steps_.push_back({number_, at_, std::string(line_)});
         grammar_.steps_.push_back(word("a functor"));
       } while (take('|'));
-    } else if (first == "polite") {
+    } else if (first == "polite" || first == "joints") {
       expect(':');
       do
-        grammar_.polite_.push_back(phrase());
+        (first == "polite" ? grammar_.polite_ : grammar_.joints_).push_back(phrase());
       while (take('|'));
     } else if (first == "list") {
       list();
@@ -131,6 +131,8 @@ class Grammar::Reader {
                       : first == "alone"  ? Use::alone
                       : first == "later"  ? Use::later
                       : first == "timed"  ? Use::timed
+                      : first == "during" ? Use::during
+                      : first == "times"  ? Use::times
                                           : Use::command;
       rule(use == Use::command ? first : word("a functor"), use, from);
     }

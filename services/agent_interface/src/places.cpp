@@ -168,25 +168,32 @@ std::string place_at(const maps::Map& map, const Vec2& position) {
   return corridor;
 }
 
+const maps::Feature* nearest_of(const std::string& place, const Situation& situation) {
+  const maps::Feature* nearest = nullptr;
+  const auto way = [&](const maps::Feature& one) {
+    return (one.pose_in_map.position() - situation.pose_in_map->position()).norm();
+  };
+  for (const maps::Feature& feature : situation.map.features)
+    if (feature.name == place && (nearest == nullptr || way(feature) < way(*nearest)))
+      nearest = &feature;
+  return nearest;
+}
+
 std::string way_to(const std::string& place, const Situation& situation) {
   if (place.empty() || !situation.pose_in_map)
     return place.empty() ? "" : place + " is on my map, but I do not know where I am on it";
   const Pose& robot = *situation.pose_in_map;
   if (place_at(situation.map, robot.position()) == place)
     return "I am in " + place;
-  std::optional<Vec2> nearest;
-  for (const maps::Feature& feature : situation.map.features) {
-    const Vec2 from_robot = to_frame(robot, feature.pose_in_map.position());
-    if (feature.name == place && (!nearest || from_robot.norm() < nearest->norm()))
-      nearest = from_robot;
-  }
-  if (!nearest)
+  const maps::Feature* const spot = nearest_of(place, situation);
+  if (spot == nullptr)
     return {};
-  const long meters = std::lround(nearest->norm());
+  const Vec2 nearest = to_frame(robot, spot->pose_in_map.position());
+  const long meters = std::lround(nearest.norm());
   return place + " is " +
          (meters < 1 ? std::string("less than a meter")
                      : "about " + std::to_string(meters) + (meters == 1 ? " meter" : " meters")) +
-         " away, " + direction_of(*nearest);
+         " away, " + direction_of(nearest);
 }
 
 std::string Dialogue::place(const std::string& name, const Situation& situation) const {
@@ -201,6 +208,9 @@ std::string Dialogue::place(const std::string& name, const Situation& situation)
     known = same(letters_of);
   if (const std::string digits = in_digits(name); known.empty() && digits != name)
     return place(digits, situation);
+  const Advice* const thing = knowledge_.find(Advice::Kind::person_at, "the " + name);
+  if (known.empty() && thing != nullptr)
+    return place(lowered(thing->value), situation);
   const std::string number = room_number(name);
   if (!known.empty() || number.empty())
     return known;
@@ -274,10 +284,8 @@ maps::RouteResult Dialogue::allowed_way(const std::string& place,
     return {};
   const maps::Topology floor(situation.map);
   maps::RouteSettings settings;
-  settings.zones = maps::all_zones(situation.map, floor);
-  for (const Claimed& one : claims())
-    if (one.name == maps::kHazards)
-      settings.zones = maps::all_zones(situation.map, floor, one.value, one.source);
+  const Claimed rules = hazards(wanted_.empty() ? tasks_.open() : wanted_);
+  settings.zones = maps::all_zones(situation.map, floor, rules.value, rules.source);
   return maps::find_route(floor, situation.pose_in_map->position(), place, settings);
 }
 
@@ -430,6 +438,16 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
   out.namings.push_back(*nearest);
   out.namings.back().name = slot(meaning, "person") + "'s office";
   return out.namings.back().name;
+}
+
+std::string Dialogue::place_or_refusal(const Meaning& meaning, const Utterance& utterance,
+                                       const Situation& situation, Outputs& out) const {
+  std::uint32_t artifact = 0;
+  std::string wrong;
+  std::string place = referred(meaning, situation, out, artifact, wrong);
+  if (place.empty())
+    refuse(utterance, wrong, out);
+  return place;
 }
 
 /// A name for the nameless room, doorway or corridor at the robot. A name that the map has stays.

@@ -258,6 +258,39 @@ void Dialogue::owner_of(const Meaning& meaning, const Utterance& utterance,
         true, out);
 }
 
+bool Dialogue::ask_agents(Request request, const std::string& unknown, const Utterance& utterance,
+                          const Situation& situation, Outputs& out) const {
+  const auto agents = situation.agents.find(request.functor);
+  if (agents == situation.agents.end())
+    return false;
+  say(utterance,
+      unknown + (unknown.empty() ? "" : "; ") + "I ask " + agents->second + ", for " +
+          saphira::plain(kAgentsPatience) + " s at most",
+      false, out);
+  request.deadline = kAgentsPatience;
+  out.asks.push_back({utterance, std::move(request)});
+  return true;
+}
+
+Dialogue::Outputs Dialogue::answered_by(const OpenQuestion& question, const std::string& agent,
+                                        const Answer& answer) {
+  Outputs out;
+  const bool known = answer.code == AnswerCode::done && !answer.results.empty();
+  std::string text = known ? agent + " says: " : "no agent knows it";
+  for (const Argument& one : known ? answer.results : Arguments{})
+    text += (text.ends_with(": ") ? "" : ", ") +
+            (one.name == "place" && question.request.functor == "place_of"
+                 ? question.request.arguments.front().text + " is at " + one.text
+                 : describe(Arguments{one}));
+  if (!answer.text.empty())
+    text += (known ? "; " : ": ") + answer.text;
+  if (known)
+    say(question.asked, text, true, out);
+  else
+    refuse(question.asked, text, out);
+  return out;
+}
+
 bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utterance,
                                     const Situation& situation, Outputs& out) const {
   const std::string& functor = meaning.functor;
@@ -270,22 +303,26 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
       return question_about_world(with({"where_office", {}}, "person", owner), utterance, situation,
                                   out);
     const std::string item = thing(person, situation);
-    std::string text;
+    std::string all;
     for (const auto& [object, to] : situation.carried)
       if (object == item)
-        text = "I have it: I was to bring it to " + to;
-    if (text.empty())
-      text = told_of(person);
-    if (text.empty())
-      text = told_of(item);
-    if (text.empty())
-      text = way_to(place(person, situation), situation);
+        all = "I have it: I was to bring it to " + to;
+    if (all.empty())
+      all = told_of(person);
+    if (all.empty())
+      all = told_of(item);
+    if (all.empty())
+      all = way_to(place(person, situation), situation);
     for (const maps::Feature& thing : situation.map.features)
-      if (text.empty() && lowered(thing.name) == person)
-        text = way_to(thing.name, situation);
-    if (text.empty())
-      text = "nobody has told me " + (holder ? "who has the " + person : "where " + person + " is");
-    say(utterance, text, true, out);
+      if (all.empty() && lowered(thing.name) == person)
+        all = way_to(thing.name, situation);
+    const std::string unknown =
+        "nobody has told me " + (holder ? "who has the " + person : "where " + person + " is");
+    Request request{"place_of", {text("person", person), open_slot("place")}};
+    if (all.empty() && !holder &&
+        ask_agents(std::move(request), unknown, utterance, situation, out))
+      return true;
+    say(utterance, all.empty() ? unknown : all, true, out);
   } else if (functor == "where_office") {
     const std::string person = slot(meaning, "person");
     const Advice* const office = knowledge_.find(Advice::Kind::office_of, person);
@@ -333,19 +370,15 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
       newest += "; " + as_told(known[known.size() - 1 - i]);
     say(utterance,
         (known.empty() ? "nobody has told me anything" : "I know " + counts + newest) +
-            (situation.is_slow ? "; I go slowly until I am told to go faster" : ""),
+            (situation.is_slow ? "; I go slowly" : ""),
         true, out);
   } else if (functor == "is_there" || functor == "who_is_in") {
     const bool people = functor == "who_is_in";
     std::string at;
     if (!slot(meaning, "place").empty() || !slot(meaning, "owner").empty()) {
-      std::uint32_t artifact = 0;
-      std::string wrong;
-      at = referred(meaning, situation, out, artifact, wrong);
-      if (at.empty()) {
-        refuse(utterance, wrong, out);
+      at = place_or_refusal(meaning, utterance, situation, out);
+      if (at.empty())
         return true;
-      }
     }
     std::string all;
     for (const Advice& one : known)
@@ -355,7 +388,7 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
                   : one.kind == Advice::Kind::hazard && !maps::zone_rule(one.about) &&
                         (slot(meaning, "kind") == kDanger ||
                          one.about.ends_with(slot(meaning, "kind")))) &&
-          (at.empty() || one.value == at))
+          (at.empty() || one.value == at) && !(people && one.about.starts_with("the ")))
         all += (all.empty() ? "" : "; ") + as_told(one);
     if (all.empty())
       all = people ? "nobody has told me who is in " + at

@@ -336,6 +336,22 @@ std::string Tasks::doing_later() const {
   return text;
 }
 
+std::string Tasks::set_pace(bool slow, const std::string& source, const std::string& listener) {
+  std::string names;
+  for (Task& one : open_) {
+    if (is_stop(one))
+      continue;
+    names += (names.empty() ? "" : " and ") + named_task(one, listener);
+    const auto set = [&](Task& step) {
+      step.rules.slow = slow;
+      step.rules.source = source;
+    };
+    set(one);
+    std::for_each(one.then.begin(), one.then.end(), set);
+  }
+  return names;
+}
+
 UtteranceId Tasks::spoken_for() const {
   UtteranceId answers{};
   for (const Task& one : open_)
@@ -345,20 +361,15 @@ UtteranceId Tasks::spoken_for() const {
 }
 
 void Tasks::archive(Archive& a) {
-  struct Kept : Task {
-    void archive(Archive& a) {
-      a("tag", goal.tag)("functor", goal.functor)("lasting", goal.lasting);
-      a("speaker", goal.speaker)("person", goal.person)("what", what)("doing", doing)("name", name);
-      a("answers", answers)("ref", ref)("sample", sample);
-    }
-  };
-  std::vector<Kept> kept;
-  for (const Task& one : open_)
-    if (one.ref != GoalRef{})
-      kept.push_back({one});
-  a("tag", tag_)("open", kept);
-  if (a.restores())
-    open_.assign(kept.begin(), kept.end());
+  std::vector<Task> open = open_;
+  std::erase_if(open, [](const Task& one) { return one.ref == GoalRef{}; });
+  std::vector<Later> later = later_;
+  std::erase_if(later, [](const Later& one) { return one.order.program != ProgramId{}; });
+  a("tag", tag_)("open", open)("later", later)("stopped", stopped_);
+  if (a.restores()) {
+    open_ = std::move(open);
+    later_ = std::move(later);
+  }
 }
 
 }  // namespace saphira::agent_interface

@@ -329,16 +329,17 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
 }
 
 void Dialogue::learn(const Advice& advice, Outputs& out) {
-  const std::vector<Claimed> before = claims();
   knowledge_.learn(advice);
   if (advice.kind == Advice::Kind::person_at || advice.kind == Advice::Kind::office_of)
     std::erase_if(gone_, [&](const Gone& one) { return one.person == advice.about; });
   out.changed = true;
-  claim_changes(before, "", out);
 }
 
 Dialogue::Outputs Dialogue::found(const std::vector<Find>& finds, double now) {
-  Outputs out;
+  return changing([&](Outputs& out) { take_finds(finds, now, out); });
+}
+
+void Dialogue::take_finds(const std::vector<Find>& finds, double now, Outputs& out) {
   const std::vector<Find> known = std::exchange(found_, finds);
   for (const Find& find : finds) {
     const bool repeated = std::any_of(known.begin(), known.end(), [&](const Find& one) {
@@ -366,13 +367,12 @@ Dialogue::Outputs Dialogue::found(const std::vector<Find>& finds, double now) {
       advice.time = now - *find.age;
     learn(advice, out);
   }
-  return out;
 }
 
 Dialogue::Outputs Dialogue::forget(double wanted) {
-  Outputs out;
   constexpr double most = 4294967295.0;  // of Advice.number on the bus
   if (!(wanted >= 1.0 && wanted <= most) || wanted != std::floor(wanted)) {
+    Outputs out;
     out.answer = {AnswerCode::bad_argument,
                   "argument \"number\": expected a whole number from 1 on "
                   "(saphira knows lists them), found " +
@@ -380,7 +380,7 @@ Dialogue::Outputs Dialogue::forget(double wanted) {
     return out;
   }
   const auto number = static_cast<std::uint64_t>(wanted);
-  withdraw(number, out);
+  Outputs out = changing([&](Outputs& more) { withdraw(number, more); });
   out.answer =
       out.changed ? Answer{AnswerCode::done, "forgotten"}
                   : Answer{AnswerCode::refused, "nothing is known under " + std::to_string(number) +
@@ -396,66 +396,75 @@ Answer Dialogue::place_of(const std::string& person) const {
 }
 
 void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* because) {
-  const std::vector<Claimed> before = claims();
   const std::optional<Advice> forgotten = knowledge_.forget(number);
   if (!forgotten)
     return;
   out.changed = true;
-  const bool hazard = forgotten->kind == Advice::Kind::hazard;
-  const bool knows = forgotten->kind == Advice::Kind::knows_where;
-  const bool has = forgotten->kind == Advice::Kind::has;
-  const std::string name = hazard ? maps::kHazards
-                                  : std::string(has     ? kCarries
-                                                : knows ? kKnowers
-                                                        : kPlaceOf) +
-                                        forgotten->about;
   // Claims about the person end, too.
-  if (!hazard && !knows && !has && knowledge_.place_of(forgotten->about).empty()) {
+  if ((forgotten->kind == Advice::Kind::person_at || forgotten->kind == Advice::Kind::office_of) &&
+      knowledge_.place_of(forgotten->about).empty()) {
     if (gone_.size() >= kMostGone)
       gone_.erase(gone_.begin());
     gone_.push_back({forgotten->about, because == nullptr ? "taken back" : claim_source(*because)});
   }
-  out.claims.push_back({name, "", ""});
-  claim_changes(before, name, out);
 }
 
-void Dialogue::claim_changes(const std::vector<Claimed>& before, const std::string& name,
-                             Outputs& out) const {
-  for (Claimed& one : claims())
-    if (one.name == name || std::find(before.begin(), before.end(), one) == before.end())
+Dialogue::Outputs Dialogue::changing(const std::function<void(Outputs&)>& change) {
+  Outputs out;
+  const std::vector<Claimed> before = claims();
+  change(out);
+  std::vector<Claimed> now = claims();
+  for (const Claimed& one : before)
+    if (std::ranges::find(now, one.name, &Claimed::name) == now.end())
+      out.claims.push_back({one.name, "", ""});
+  for (Claimed& one : now)
+    if (std::ranges::find(before, one) == before.end())
       out.claims.push_back(std::move(one));
+  return out;
+}
+
+Claimed Dialogue::hazards(const std::vector<Task>& tasks) const {
+  Claimed all{maps::kHazards, "", ""};
+  const auto join = [&](const std::string& value, const std::string& source) {
+    all.value += (all.value.empty() ? "" : "; ") + value;
+    all.source += (all.source.empty() ? "" : "; ") + source;
+  };
+  for (const Advice& one : knowledge_.all())
+    if (one.kind == Advice::Kind::hazard)
+      join(one.about + " at " + one.value, source_of(one));
+  for (const Task& one : tasks)
+    for (const std::string& zone : one.rules.zones)
+      join(zone, one.rules.source);
+  return all;
 }
 
 std::vector<Claimed> Dialogue::claims() const {
   std::vector<Claimed> result;
-  const auto join = [&](Claimed& all, const Advice& advice, const std::string& value,
-                        const char* between) {
-    all.value += (all.value.empty() ? "" : between) + value;
-    all.source += (all.source.empty() ? "" : "; ") + source_of(advice);
-  };
-  Claimed hazards{maps::kHazards, "", ""};
   for (const Advice& one : knowledge_.all()) {
     const std::string name =
         std::string(one.kind == Advice::Kind::knows_where ? kKnowers : kPlaceOf) + one.about;
-    const auto same = std::find_if(result.begin(), result.end(),
-                                   [&](const Claimed& each) { return each.name == name; });
-    if (one.kind == Advice::Kind::hazard) {
-      join(hazards, one, one.about + " at " + one.value, "; ");
-    } else if (one.kind == Advice::Kind::has) {  // so the robot has it not
+    const auto same = std::ranges::find(result, name, &Claimed::name);
+    if (one.kind == Advice::Kind::has) {  // so the robot has it not
       result.push_back({std::string(kCarries) + one.about, "nil", source_of(one), {}, true});
     } else if (one.kind == Advice::Kind::knows_where) {
       Claimed& all = same == result.end() ? result.emplace_back(Claimed{name, "", ""}) : *same;
-      join(all, one, one.value, ", ");
+      all.value += (all.value.empty() ? "" : ", ") + one.value;
+      all.source += (all.source.empty() ? "" : "; ") + source_of(one);
       all.list.push_back(one.value);
     } else if (one.kind == Advice::Kind::person_at ||
-               knowledge_.find(Advice::Kind::person_at, one.about) == nullptr) {
+               (one.kind == Advice::Kind::office_of &&
+                knowledge_.find(Advice::Kind::person_at, one.about) == nullptr)) {
       result.push_back({name, one.value, source_of(one)});
     }
   }
   for (const Gone& one : gone_)
     result.push_back({"place-of-" + one.person, "nil", one.source, {}, true});
-  if (!hazards.value.empty())
-    result.push_back(std::move(hazards));
+  const auto slow =
+      std::ranges::find_if(tasks_.open(), [](const Task& one) { return one.rules.slow; });
+  if (pace_ || slow != tasks_.open().end())
+    result.push_back({kPace, "slow", pace_ ? pace_->source : slow->rules.source});
+  if (Claimed all = hazards(tasks_.open()); !all.value.empty())
+    result.push_back(std::move(all));
   return result;
 }
 

@@ -182,9 +182,9 @@ class Grammar::UrgentFinder {
       if (!begins)
         continue;
       const std::vector<std::string> words(words_.begin() + static_cast<std::ptrdiff_t>(at), end);
-      for (const Among among : {Among::urgent, Among::usual})
-        for (const Meaning& one : grammar_.look(words, true, false, among))
-          if (among == Among::urgent || (clause.ends_sentence && is_order(one)))
+      for (const Use use : {Use::urgent, Use::command})
+        for (const Meaning& one : grammar_.look(words, true, false, use))
+          if (use == Use::urgent || (clause.ends_sentence && is_order(one)))
             return one;
       begins = !fillers(at, clause.to).empty();
     }

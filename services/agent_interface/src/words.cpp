@@ -13,6 +13,13 @@ std::string slot(const Meaning& meaning, const std::string& name) {
   return found == meaning.slots.end() ? std::string() : found->second;
 }
 
+Argument open_slot(std::string name) {
+  Argument slot;
+  slot.name = std::move(name);
+  slot.kind = ArgumentKind::unbound;
+  return slot;
+}
+
 double number_of(const Meaning& meaning, const std::string& name) {
   return std::strtod(slot(meaning, name).c_str(), nullptr);
 }

@@ -46,6 +46,8 @@ bool is_letter(char c);
 /// The value of a slot; empty: the meaning has no such slot.
 std::string slot(const Meaning& meaning, const std::string& name);
 double number_of(const Meaning& meaning, const std::string& name);
+/// An argument of a request that the answer fills.
+Argument open_slot(std::string name);
 bool is_yes_or_no(const Meaning& meaning);
 /// True where a sentence ends with a question mark.
 bool is_question(std::string_view text);
@@ -82,6 +84,8 @@ const maps::Feature* nearest_door(
     const std::function<bool(const maps::Feature&)>& fits = [](const maps::Feature&) {
       return true;
     });
+/// The nearest feature of the map with that name; nullptr: none. The robot's pose has to be known.
+const maps::Feature* nearest_of(const std::string& place, const Situation& situation);
 /// The way to a place of the map, as the crow flies. Empty: no such place.
 std::string way_to(const std::string& place, const Situation& situation);
 

@@ -47,7 +47,7 @@ class DialogueOnTheBus : public testing::Test {
     return answers();
   }
   std::string message(std::uint64_t cycle, const std::string& text) {
-    messages.write({.stamp = {3, cycle}, .text = text});
+    messages.write({.stamp = {3, cycle}, .source = "intentions: ask", .text = text});
     dialogue->step();
     return answers();
   }
@@ -150,6 +150,39 @@ TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNot
     return told.find("own.grammar:2:") != std::string::npos;
   })) << told;
   EXPECT_EQ(say("robot, cease"), "I stop at once");
+}
+
+TEST_F(DialogueOnTheBus, AQuestionIsPutToAnAgentWhileItIsThere) {
+  bus::Node badges(test::memory_options("badges"), memory);
+  auto agents = badges.writer(bus::topics::kAgents);
+  auto asked = badges.reader<v1::Request>(bus::topics::kSolve);
+  auto solved = badges.writer(bus::topics::kSolved);
+  const v1::Agent agent{
+      .id = 5, .name = "badges", .capabilities = {bus::capability("place_of", "", {})}};
+  agents.write(agent);
+  EXPECT_EQ(say("Flakey, where is Karen?"),
+            "nobody has told me where karen is; I ask badges, for 5 s at most");
+  dialogue->step();
+  const auto request = test::only(asked.take());
+  EXPECT_EQ(request.data.functor, "place_of");
+  EXPECT_EQ(request.data.deadline, kAgentsPatience);
+  solved.write({.asker = request.data.asker,
+                .number = request.data.number,
+                .service = "badges",
+                .code = v1::ANSWER_DONE,
+                .results = {bus::text("place", "EJ-231")}});
+  dialogue->step();
+  EXPECT_EQ(answers(), "badges says: karen is at EJ-231");
+  agents.dispose(agent);
+  EXPECT_EQ(say("Flakey, where is Karen?"), "nobody has told me where karen is");
+}
+
+TEST_F(DialogueOnTheBus, AMessageOfAnotherProgramThanAnActivityIsNotSaid) {
+  say("Flakey, take the mail from EJ-231 to EJ-233");
+  messages.write({.stamp = {3, 50}, .source = "console", .text = "my file is full"});
+  dialogue->step();
+  EXPECT_EQ(answers(), "");
+  EXPECT_EQ(message(51, "Is John here?"), "Is John here?");
 }
 
 TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
@@ -280,7 +313,7 @@ TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt
   std::vector<std::string> values;
   for (const auto& sample : claims.take())
     values.push_back(sample.info.disposed ? "disposed" : sample.data.value);
-  EXPECT_EQ(values, (std::vector<std::string>{"disposed", "nil"}));
+  EXPECT_EQ(values, std::vector<std::string>{"nil"});
   // Beliefs from before a restart are older than that.
   start();
   dialogue->step();

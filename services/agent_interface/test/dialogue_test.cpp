@@ -55,6 +55,56 @@ TEST_F(DialogueTest, AGoalThatNoProgramTakesUpIsWithdrawnAndEndsItsSequence) {
   EXPECT_TRUE(dialogue.without_status({}, 106.0).said.empty());
 }
 
+TEST_F(DialogueTest, TheLaterStepsOfASequenceOutliveARestart) {
+  hear("Flakey, go slowly to EJ-231, then to EJ-233");
+  dialogue.asked(last.goals.at(0).tag, {9, 1}, "as written");
+  Dialogue restarted{grammar()};
+  restore(saved(dialogue), restarted);
+  EXPECT_EQ(saved(restarted), saved(dialogue));
+  EXPECT_EQ(claims(restarted.claims()), "pace=slow");
+  last = restarted.ended({last.goals.at(0).tag, true, "arrived"});
+  EXPECT_EQ(answer(), "done: arrived / I go to EJ-233, slowly");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
+  EXPECT_EQ(claims(last.claims), "");
+  last = restarted.ended({last.goals.at(0).tag, true, "arrived"});
+  EXPECT_EQ(claims(last.claims), "pace=");
+}
+
+TEST_F(DialogueTest, AnOpenQuestionIsPutToTheAgentsThatKnowSuchFacts) {
+  EXPECT_EQ(said("Flakey, where is Karen?"), "nobody has told me where karen is");
+  situation.agents = {{"place_of", "calendar and badges"}};
+  EXPECT_EQ(said("Flakey, where is Karen?"),
+            "nobody has told me where karen is; I ask calendar and badges, for 5 s at most");
+  EXPECT_FALSE(last.said.at(0).end);
+  ASSERT_EQ(last.asks.size(), 1u);
+  const OpenQuestion asked = last.asks.front();
+  EXPECT_EQ(describe(asked.request), "place_of person=\"karen\" place=?");
+  EXPECT_EQ(asked.request.deadline, kAgentsPatience);
+  last = dialogue.answered_by(asked, "badges", {AnswerCode::done, "", {text("place", "EJ-231")}});
+  EXPECT_EQ(answer(), "badges says: karen is at EJ-231");
+  EXPECT_EQ(last.said.at(0).answers, asked.asked.id);
+  EXPECT_TRUE(last.said.at(0).end);
+  last = dialogue.answered_by(asked, "badges", {AnswerCode::refused, "no badge of hers"});
+  EXPECT_EQ(answer(), "no agent knows it: no badge of hers");
+  EXPECT_TRUE(last.said.at(0).refused);
+  hear("Flakey, Karen is in EJ-233");
+  EXPECT_EQ(said("Flakey, where is Karen?"), "Alice said that karen is at EJ-233");
+  EXPECT_TRUE(last.asks.empty());
+}
+
+TEST_F(DialogueTest, AMeaningThatOnlyAnAgentKnowsIsAskedOfIt) {
+  const std::string more = "weather(day)\n  what is the weather [on {day}]\n";
+  dialogue.use(Grammar(read_file(test::source("config/grammars/flakey.grammar")) + more, "own"));
+  EXPECT_EQ(said("Flakey, what is the weather?"),
+            "I understand weather, and do not know how to do it");
+  situation.agents = {{"weather", "oracle"}};
+  EXPECT_EQ(said("Flakey, what is the weather?"), "I ask oracle, for 5 s at most");
+  EXPECT_EQ(describe(last.asks.at(0).request), "weather day=?");
+  last = dialogue.answered_by(last.asks.at(0), "oracle",
+                              {AnswerCode::done, "fine", {text("day", "today")}});
+  EXPECT_EQ(answer(), "oracle says: day=\"today\"; fine");
+}
+
 TEST_F(DialogueTest, AGoalWithAStatusIsTakenUpHoweverLongItLasts) {
   hear("Flakey, turn left");
   const std::uint64_t tag = last.goals.at(0).tag;

@@ -30,6 +30,7 @@ typed turn(direction, degrees=90)
   veer <side:direction>
 list asking: if | where
 steps: turn | go_to | tell | wait_there
+joints: then | after that | afterwards
 tell(person, message) "I tell $person: $message" "bringing $person a message" "the message"
   tell {person} [that] <asking:message> {message ...} | tell {person} to {message ...}
 later wait_there()

@@ -42,6 +42,8 @@ inline std::string meaning_of(const Grammar& grammar, const SaidAndMeant& phrase
     std::string text = describe(understood.meanings.front());
     for (const Meaning& step : understood.then)
       text += "; then " + describe(step);
+    for (const Meaning& rule : understood.during)
+      text += "; with " + describe(rule);
     return text;
   }
   if (understood.meanings.size() > 1)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -80,6 +81,7 @@ struct Situation {
   bool is_slow = false;        ///< it was told to go slowly
   bool is_driven = false;      ///< by a person or program in a stronger role than the tasks
   std::string estop{};         ///< the program that pressed the emergency stop; empty: none
+  std::map<std::string, std::string> agents{};  ///< functors of facts, and who knows them
 };
 
 /// The request that puts an artifact with its name on the map.
@@ -90,6 +92,15 @@ Request put_on_map(const maps::Feature& feature);
 std::vector<Find> heed(const v1::BeliefSet& set, double age, Situation& situation);
 /// Puts the emergency stop and the role that drives into the situation.
 void heed(const v1::Grant& grant, Situation& situation);
+
+/// A person's question that is put to agents.
+struct OpenQuestion {
+  Utterance asked;
+  Request request;
+};
+
+/// [s] that agents have for the answer to a person's question.
+inline constexpr double kAgentsPatience = 5.0;
 
 /// Turns people's words into meanings, and meanings into goals, answers and knowledge (paper 4).
 /// States its interpretation before it acts. A value: no clock, bus or file.
@@ -114,12 +125,15 @@ class Dialogue {
     std::string note;                    ///< for the log; empty: none
     v1::AuditEntry denied{};             ///< the person may not do it; without a text: they may
     UnknownName unknown{};
+    std::vector<OpenQuestion> asks;
     Answer answer{};  ///< of forget()
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   /// A program that has spoken has ended or has withdrawn its words: its tasks end.
   Outputs left(const ProgramId& program);
   Outputs ended(const Outcome& outcome);
+  /// The end of a question that was put to agents, and the agent that has answered.
+  Outputs answered_by(const OpenQuestion& question, const std::string& agent, const Answer& answer);
   /// A stop that is not of this dialogue (`self`), or an emergency stop, ends orders for a later
   /// time. The first grant shows an earlier stop.
   Outputs granted(const v1::Grant& grant, std::uint64_t self);
@@ -151,8 +165,8 @@ class Dialogue {
   /// The claims for activities that follow from all advice, after a start.
   std::vector<Claimed> claims() const;
 
-  /// The state that outlives a restart: the knowledge, the ids of heard utterances, and lasting
-  /// goals.
+  /// The state that outlives a restart: the knowledge, the ids of heard utterances, lasting goals,
+  /// and orders for later.
   void archive(Archive& a);
 
  private:
@@ -178,6 +192,11 @@ class Dialogue {
     std::string reason;
   };
 
+  /// The outputs of a change, with the claims that are other ones by it.
+  Outputs changing(const std::function<void(Outputs&)>& change);
+  void begin_due(const Situation& situation, Outputs& out);
+  void take_in(const Utterance& utterance, const Situation& situation, Outputs& out);
+  void take_finds(const std::vector<Find>& finds, double now, Outputs& out);
   /// Carries out a sentence, or asks back.
   void carry_out(Grammar::Understood understood, const Utterance& utterance,
                  const Situation& situation, Outputs& out);
@@ -224,7 +243,13 @@ class Dialogue {
   bool errand(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
   void change_pace(bool slower, const Utterance& utterance, const Situation& situation,
-                   Outputs& out) const;
+                   Outputs& out);
+  /// Adds a rule for as long as the sentence that is being heard is done. False: it is refused.
+  bool add_rule(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+                Rules& rules, Outputs& out) const;
+  /// Puts a question to the agents that know such facts. False: there is none.
+  bool ask_agents(Request request, const std::string& unknown, const Utterance& utterance,
+                  const Situation& situation, Outputs& out) const;
   void wait_until(const Meaning& meaning, const Utterance& utterance, Outputs& out);
   /// Keeps the place where a new task begins, for "come back".
   void note_begin(const Situation& situation, const Outputs& out);
@@ -254,9 +279,8 @@ class Dialogue {
                    Outputs& out) const;
   void learn(const Advice& advice, Outputs& out);
   void withdraw(std::uint64_t number, Outputs& out, const Utterance* because = nullptr);
-  /// Adds the claims that are new or changed since `before`, and the claim of that name.
-  void claim_changes(const std::vector<Claimed>& before, const std::string& name,
-                     Outputs& out) const;
+  /// All hazards and rules of zones, with those of these tasks.
+  Claimed hazards(const std::vector<Task>& tasks) const;
   /// The facts about a person or thing, in words; empty: none.
   std::string told_of(const std::string& about) const;
   /// The meaning as the robot would say it.
@@ -306,6 +330,10 @@ class Dialogue {
   std::string referred(const Meaning& meaning, const Situation& situation, Outputs& out,
                        std::uint32_t& artifact, std::string& wrong) const;
 
+  /// The same; where there is none, the reason is said.
+  std::string place_or_refusal(const Meaning& meaning, const Utterance& utterance,
+                               const Situation& situation, Outputs& out) const;
+
   Grammar grammar_;
   Knowledge knowledge_;
   std::vector<Question> questions_;  ///< the newest of each speaker
@@ -316,6 +344,13 @@ class Dialogue {
   };
 
   std::vector<Gone> gone_;
+  struct Pace {           ///< a slow one that no order of this dialogue has
+    std::string speaker;  ///< whose next order takes it
+    std::string source;
+    bool for_others = false;  ///< it was said while the robot did something for another program
+  };
+
+  std::optional<Pace> pace_{};
   std::optional<Ended> ended_;
   UtteranceId unclear_{};   ///< the newest utterance, which was no answer; 0, 0: it was one
   std::uint64_t stop_ = 0;  ///< the tag of the newest stop

@@ -58,6 +58,7 @@ class Grammar {
     bool timed = false;             ///< the first step is a time, and the others are for then
     std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
     std::vector<Meaning> then{};    ///< "... and ...": what to do after the first meaning
+    std::vector<Meaning> during{};  ///< rules for as long as it is done: a pace, a way not to take
     /// All steps, where the end of a free text may as well be an order of its own: "tell Karen that
     /// I am late and go home". Empty: it may not.
     std::vector<Meaning> apart{};
@@ -115,6 +116,8 @@ class Grammar {
     reply,   ///< without the keyword, after a question of the robot
     later,   ///< a later step of a sequence
     timed,   ///< a time, before or behind an order
+    during,  ///< a rule for the order before or behind it
+    times,   ///< how often the order before or behind it is done
     urgent,  ///< where no other rule matches; more words may follow
     alone    ///< an urgent order by itself: see urgent()
   };
@@ -144,14 +147,22 @@ class Grammar {
                            const Match& from) const;
   std::optional<std::pair<std::size_t, std::string>> decimal(const std::vector<std::string>& words,
                                                              std::size_t at) const;
-  enum class Among { usual, reply, urgent, later, alone, timed };  ///< the rules that may match
+  /// The meanings by the rules for that use; `command`: also the typed ones.
   std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
-                            Among among) const;
+                            Use use) const;
   /// The ways to divide words and commas into sentences with one meaning each, all of them steps.
   /// `before`: the words of the step before them. runs_on: also where no word joins two sentences.
   std::vector<std::vector<Meaning>> divided(const std::vector<std::string>& words,
                                             const std::vector<std::string>& before,
                                             bool runs_on) const;
+  /// One step, or the same several times; empty: it is none. sentence: as it was looked for.
+  std::vector<Meaning> steps_in(std::vector<std::string>& sentence,
+                                const std::vector<std::string>& before) const;
+  /// A meaning of that kind before or behind other words, and these. A rule may also be within
+  /// them.
+  std::vector<std::pair<Meaning, std::vector<std::string>>> asides(
+      const std::vector<std::string>& words, Use use) const;
+  std::size_t joint(const std::vector<std::string>& words, std::size_t at) const;
   bool is_step(const Meaning& meaning) const;
   std::vector<std::string> completed(const std::vector<std::string>& before,
                                      const std::vector<std::string>& words) const;
@@ -169,6 +180,7 @@ class Grammar {
   std::vector<std::string> not_after_;
   std::vector<std::string> alarms_;  ///< words that may stand around an urgent order: "help"
   std::vector<std::string> steps_;   ///< functors that a sequence may have
+  std::vector<std::vector<std::string>> joints_;  ///< words between two steps, as "after that"
   std::vector<std::vector<std::string>> polite_;  ///< words before an order, as "can you"
   std::map<std::string, std::vector<Entry>> lists_;
   std::vector<Rule> rules_;

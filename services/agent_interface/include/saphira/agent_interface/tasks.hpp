@@ -91,6 +91,14 @@ struct LastingGoal {
   bool operator==(const LastingGoal&) const = default;
 };
 
+/// The rules for as long as an order is done.
+struct Rules {
+  std::vector<std::string> zones{};  ///< as the belief `hazards` has them: "keep-out at lobby"
+  bool slow = false;                 ///< at a slow pace
+  std::string source{};              ///< who said so, in words
+  std::string text{};                ///< behind the order: ", slowly"
+};
+
 /// The order of a person. Its owner is the speaker of its goal.
 struct Task {
   WantedGoal goal;
@@ -103,6 +111,7 @@ struct Task {
   ProgramId program{};     ///< the task ends with this program
   bool brief = false;      ///< a motion or a look: a task goes on after it
   bool waits = false;      ///< it was told that it waits
+  Rules rules{};           ///< for this step
   std::vector<Task> then;  ///< the later steps of a sequence
 };
 
@@ -169,11 +178,13 @@ class Tasks {
   std::string doing_later() const;
   /// It is told that an open task waits. False: it was told before.
   bool note_waiting(std::uint64_t tag);
+  /// The open goals are done slowly, or no longer so. Empty: there is none.
+  std::string set_pace(bool slow, const std::string& source, const std::string& listener);
   /// The utterance that an activity's message answers; 0, 0: none.
   UtteranceId spoken_for() const;
 
-  /// The lasting goals alone: others end with the dialogue. The later steps of a sequence are not
-  /// kept.
+  /// The lasting goals with their later steps, what a stop has ended, and the orders for later.
+  /// Other goals, and all of programs, end with the dialogue.
   void archive(Archive& a);
 
  private:
