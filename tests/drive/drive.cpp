@@ -189,6 +189,7 @@ void Drive::step_services() {
                        .left_stalled = seen_.left_stalled,
                        .right_stalled = seen_.right_stalled,
                        .head = seen_.head};
+  state.sonars.reserve(seen_.readings.size());
   for (const lps::SonarReading& reading : seen_.readings)
     state.sonars.push_back({.sonar = static_cast<std::uint8_t>(reading.sonar),
                             .range = static_cast<float>(reading.range),
@@ -250,6 +251,7 @@ std::vector<Edge> Drive::edges() const {
 void Drive::guard(reflector::Setpoints& wanted) {
   const double speed = wanted.velocity;
   std::vector<protocol::Sonar> sonars;
+  sonars.reserve(seen_.readings.size());
   for (const lps::SonarReading& reading : seen_.readings)
     sonars.push_back({static_cast<std::uint8_t>(reading.sonar), reading.range, reading.echo});
   const std::vector<Edge> edges = this->edges();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "epochs.hpp"
 #include "internal.hpp"
@@ -120,17 +121,19 @@ struct Cycle::Impl {
       if (described.size() > kDescriptions)
         described.pop_front();
     });
+    // States whose description has not come yet stay, in their order.
+    std::erase_if(arrived,
+                  [&](const Arrived& one) { return !undecided(one.state, one.writer, one.when); });
     robot.visit([&](const v1::RobotState& state, const SampleInfo& info) {
       if (info.disposed)
         return;
       if (state.stamp.epoch == 0 || state.stamp.cycle == 0)
         return refuse(topics::kRobotState.name, state.stamp, "without epoch or cycle");
-      arrived.push_back({state, info.writer, Clock::now()});
+      if (const auto now = Clock::now(); undecided(state, info.writer, now))
+        arrived.push_back({state, info.writer, now});
     });
-    // States whose description has not come yet stay, in their order.
-    std::erase_if(arrived, [&](const Arrived& one) { return !undecided(one); });
     while (arrived.size() > kPending) {
-      refuse_stray(arrived.front());
+      refuse_stray(arrived.front().state, arrived.front().writer);
       arrived.pop_front();
     }
     for (auto& slot : inputs)
@@ -159,35 +162,35 @@ struct Cycle::Impl {
     Clock::time_point when;
   };
 
-  bool undecided(const Arrived& one) {
+  bool undecided(const v1::RobotState& state, const WriterId& writer, Clock::time_point when) {
     const std::uint64_t before = epochs.epoch();
-    switch (epochs.judge(Peers::program_of(one.writer), one.state.stamp.epoch)) {
+    switch (epochs.judge(Peers::program_of(writer), state.stamp.epoch)) {
       case Epochs::Verdict::adopt:
         adopt(before);
         robot_now = description_of(epochs.epoch());
         [[fallthrough]];
       case Epochs::Verdict::take:
-        take(one.state);
+        take(state);
         return false;
       case Epochs::Verdict::wait:
-        if (since(one.when) < kUndescribed)
+        if (since(when) < kUndescribed)
           return true;
-        refuse_stray(one);
+        refuse_stray(state, writer);
         return false;
       case Epochs::Verdict::foreign:
-        refuse(topics::kRobotState.name, one.state.stamp,
-               "of another bridge, " + program(one.writer) + ", with a robot of the same name");
+        refuse(topics::kRobotState.name, state.stamp,
+               "of another bridge, " + program(writer) + ", with a robot of the same name");
         return false;
       case Epochs::Verdict::left:
-        refuse(topics::kRobotState.name, one.state.stamp, "of an epoch that was left");
+        refuse(topics::kRobotState.name, state.stamp, "of an epoch that was left");
         return false;
     }
     return false;
   }
 
-  void refuse_stray(const Arrived& one) {
-    refuse(topics::kRobotState.name, one.state.stamp,
-           "of " + program(one.writer) + ", which has described no robot for this epoch");
+  void refuse_stray(const v1::RobotState& state, const WriterId& writer) {
+    refuse(topics::kRobotState.name, state.stamp,
+           "of " + program(writer) + ", which has described no robot for this epoch");
   }
 
   // Of the bridge and the epoch that are followed.
@@ -210,7 +213,7 @@ struct Cycle::Impl {
     }
     pending.push_back(state);
     if (pending.size() > kPending)
-      pending.pop_front();
+      pending.erase(pending.begin());
   }
 
   // Live: the newest state, at once.
@@ -272,7 +275,7 @@ struct Cycle::Impl {
       if (ready == Inputs::missing)
         return {};
       if (ready == Inputs::gone) {
-        pending.pop_front();
+        pending.erase(pending.begin());
         // Only a service that joins a running lockstep late may skip a cycle.
         if (!joining) {
           ++status.late_cycles;
@@ -293,7 +296,7 @@ struct Cycle::Impl {
         if (missing = gate(pending.front()); !missing.empty())
           return {};
       step.robot = std::move(pending.front());
-      pending.pop_front();
+      pending.erase(pending.begin());
       if (step.stale)
         node.warn("lockstep: begins at cycle " + std::to_string(cycle) +
                   " without the inputs of the cycle before, which nobody has");
@@ -362,13 +365,13 @@ struct Cycle::Impl {
   std::deque<v1::RobotDescription> described;
   v1::RobotDescription robot_now;  // of this epoch
   std::vector<Gate> gates;
-  std::string missing;                 // the input that a gate waits for
-  std::deque<v1::RobotState> pending;  // of this epoch, not yet stepped, in order
-  std::uint64_t last = 0;              // cycle of this epoch that was stepped last
-  bool joining = true;                 // no step of this epoch yet
-  bool fresh = true;                   // the next step is the first of its epoch
-  bool quiet = false;                  // no step was due for so long that the status says it
-  int behind = 0;                      // states in a row that were behind the newest one
+  std::string missing;                  // the input that a gate waits for
+  std::vector<v1::RobotState> pending;  // of this epoch, not yet stepped, in order
+  std::uint64_t last = 0;               // cycle of this epoch that was stepped last
+  bool joining = true;                  // no step of this epoch yet
+  bool fresh = true;                    // the next step is the first of its epoch
+  bool quiet = false;                   // no step was due for so long that the status says it
+  int behind = 0;                       // states in a row that were behind the newest one
   std::uint64_t behind_cycle = 0;
   std::set<std::string> told;
   std::string degraded;

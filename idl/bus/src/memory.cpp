@@ -208,8 +208,12 @@ bool MemoryWriter::put(const void* sample, bool disposed) {
     newest_[next_] = copy;
   lock.unlock();
   common.type->copy(sample, copy.get());
-  const Item item{std::move(copy), common.type->key(sample),        id, disposed,
-                  sender,          std::chrono::steady_clock::now()};
+  const Item item{std::move(copy),
+                  common.type->keyed ? common.type->key(sample) : InstanceKey{},
+                  id,
+                  disposed,
+                  sender,
+                  std::chrono::steady_clock::now()};
   lock.lock();
   if (disposed) {
     std::erase_if(history, [&](const Item& old) { return old.key == item.key; });

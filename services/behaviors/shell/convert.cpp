@@ -67,6 +67,7 @@ v1::BehaviorState to_bus(const BehaviorState& state) {
                            .turn = blended.turn,
                            .recommends_speed = blended.recommends_speed,
                            .speed = blended.speed};
+  sample.rules.reserve(std::min(blended.evaluation.rules.size(), kMostRules));
   for (const Rule& rule : blended.evaluation.rules) {
     if (sample.rules.size() == kMostRules)
       break;

@@ -41,9 +41,10 @@ struct Row {
   std::array<std::int32_t, Grid::kTile> bin;
 };
 
-/// The first cell is at x, y from the sonar, in cells of `size`.
-SAPHIRA_WIDE void look(const Beam& beam, float x, float y, float size, int bins, int count,
-                       Row& row) {
+/// The first cell is at x, y from the sonar, in cells of `size`. In line, as for_cone(): a part of
+/// weigh(), which is compiled twice.
+[[gnu::always_inline]] inline void look(const Beam& beam, float x, float y, float size, int bins,
+                                        int count, Row& row) {
   const auto [heading, c, s, edge, range, far, detection, echo, spread] = beam;
   const auto all_bins = static_cast<float>(bins);
   const float by_angle = all_bins / static_cast<float>(2.0 * kPi);
@@ -81,23 +82,24 @@ Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(set
     probabilities_.push_back(1.0 / (1.0 + std::exp(-prior_ - kStep * total)));
   for (const double probability : probabilities_)
     bytes_.push_back(static_cast<std::uint8_t>(std::lround(200.0 * probability)));
+  std::vector<float> limits;  // that give one more step than their index
   for (int steps = 0; steps < kMost; ++steps)
-    detections_.push_back(static_cast<float>(1.0 - std::exp(-kStep * (steps + 0.5))));
-  detections_.push_back(std::numeric_limits<float>::infinity());
-  for (int i = 0; i <= kFine; ++i)
-    least_steps_.push_back(static_cast<int>(
-        std::upper_bound(detections_.begin(), detections_.end(), static_cast<float>(i) / kFine) -
-        detections_.begin()));
+    limits.push_back(static_cast<float>(1.0 - std::exp(-kStep * (steps + 0.5))));
+  limits.push_back(std::numeric_limits<float>::infinity());
+  for (int i = 0; i <= kFine; ++i) {
+    const auto next = std::upper_bound(limits.begin(), limits.end(), static_cast<float>(i) / kFine);
+    free_steps_.push_back({*next, static_cast<std::uint8_t>(next - limits.begin())});
+  }
 }
 
 inline int Grid::free_steps(float detection) const {
-  const int least = least_steps_[static_cast<std::size_t>(static_cast<int>(detection * kFine))];
-  return detection >= detections_[static_cast<std::size_t>(least)] ? least + 1 : least;
+  const auto& [limit, steps] =
+      free_steps_[static_cast<std::size_t>(static_cast<long>(detection * kFine))];
+  return steps + (detection >= limit ? 1 : 0);
 }
 
 inline int Grid::weighed(int said) const {
-  const int index = said + kHalf;
-  return weighed_[static_cast<std::size_t>(index)];
+  return weighed_[static_cast<std::size_t>(static_cast<long>(said) + kHalf)];
 }
 
 void Grid::clear() {
@@ -192,7 +194,8 @@ void Grid::add(int sonar, const Pose& sonar_in_grid, std::optional<double> range
 }
 
 template <class F>
-void Grid::for_cone(const Pose& sonar, double range, double echo, double spread, F&& f) {
+[[gnu::always_inline]] inline void Grid::for_cone(const Pose& sonar, double range, double echo,
+                                                  double spread, F&& f) {
   const double size = settings_.resolution;
   const double edge = std::tan(settings_.beam);
   const ConeRows cone(sonar, edge, range);
@@ -229,8 +232,8 @@ void Grid::for_cone(const Pose& sonar, double range, double echo, double spread,
       const long row0 = tile_row * kTile;
       const long column0 = tile_column * kTile;
       Tile* tile = nullptr;
-      for (long row = std::max(row0, first_row); row <= std::min(row0 + kTile - 1, last_row);
-           ++row) {
+      const long end_row = std::min(row0 + kTile - 1, last_row);
+      for (long row = std::max(row0, first_row); row <= end_row; ++row) {
         const auto& span = spans_[static_cast<std::size_t>(row - first_row)];
         const long begin = std::max(column0, span.first);
         const long count = std::min(column0 + kTile - 1, span.second) - begin + 1;
@@ -252,10 +255,10 @@ void Grid::for_cone(const Pose& sonar, double range, double echo, double spread,
     }
 }
 
-void Grid::evidence(Tile& tile, std::size_t cell, int bin, int steps) {
+inline void Grid::evidence(Tile& tile, std::size_t cell, int bin, int steps) {
   std::int8_t& said = tile.bins[cell][static_cast<std::size_t>(bin)];
   const auto before = static_cast<int>(said);  // NOLINT(bugprone-signed-char-misuse): a number
-  const int after = std::clamp(before + steps, -kMost, kMost);
+  const int after = steps <= 0 ? std::max(before + steps, -kMost) : std::min(before + steps, kMost);
   tile.seen[cell] = true;
   if (after == before)
     return;
@@ -263,7 +266,7 @@ void Grid::evidence(Tile& tile, std::size_t cell, int bin, int steps) {
   tile.total[cell] = static_cast<std::int16_t>(tile.total[cell] + weighed(after) - weighed(before));
 }
 
-void Grid::weigh(const Pose& sonar, std::optional<double> range) {
+SAPHIRA_WIDE void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   const double far = settings_.range;
   // Beyond three deviations behind the echo there is no evidence.
   const double deviation =
@@ -274,16 +277,16 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
   arc_.clear();
   const auto most_density = static_cast<float>(1.0 / (std::sqrt(2.0 * kPi) * spread));
   float sum = 0.0F;
-  std::uint64_t updates = 0;
   const double echo = range.value_or(std::numeric_limits<double>::infinity());
   const auto take = [&](Tile& tile, std::size_t cell0, const Row& row, std::size_t i,
                         std::size_t end) {
     tile.changed = true;
+    std::uint64_t met = 0;
     for (; i < end; ++i) {
       const float found = row.found[i];
       if (found <= 0.0F)
         continue;
-      ++updates;
+      ++met;
       const std::size_t cell = cell0 + i;
       const int bin = row.bin[i];
       const float behind = row.behind[i];
@@ -298,9 +301,9 @@ void Grid::weigh(const Pose& sonar, std::optional<double> range) {
       sum += arc.odds * arc.density;
       arc_.push_back(arc);
     }
+    updates_ += met;
   };
   for_cone(sonar, reach, echo, spread, take);
-  updates_ += updates;
   const auto false_echoes = static_cast<float>(settings_.false_echoes);
   const auto attribution = static_cast<float>(settings_.attribution);
   // The echo came from somewhere on the arc: the beliefs in the rest of it explain it as well.

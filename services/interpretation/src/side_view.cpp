@@ -219,13 +219,14 @@ void SideView::interpret(double travelled, const std::deque<Return>& others) {
 void SideView::describe(const Candidate& candidate, const std::deque<Return>& others) {
   const Line& line = candidate.fit.line;
   std::vector<Event> events;
+  const double square_on = std::cos(settings_.sure);
   for (const Return& firing : returns_) {
     const double d = line.distance(firing.sonar);
     const double cosine = firing.axis.dot(line.normal);
     if (d <= 0.0 || d > settings_.max_range || cosine < incidence_)
       continue;
     Event event{line.u(firing.sonar), &firing, Says::other};
-    const bool sure = firing.steady && cosine >= std::cos(settings_.sure);
+    const bool sure = firing.steady && cosine >= square_on;
     if (misses(firing, line, candidate.newest, candidate.turned))
       event.says = Says::wall;
     else if (!firing.echo || firing.range > d + settings_.through) {
@@ -436,6 +437,7 @@ void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,
 
   // The same corner as heard from other places: on a circle and on the line.
   std::vector<std::pair<double, const Return*>> posts;
+  const double cone = std::cos(settings_.post_cone);
   for (const Return& other : others) {
     const double h = line.distance(other.sonar);
     if (!other.steady || h < 0.15 || other.range < 1.05 * h ||
@@ -446,7 +448,7 @@ void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,
     for (const double sign : {-1.0, 1.0}) {
       const Vec2 way = (sign * off * line.along() + h * line.normal) / other.range;
       const double at = line.u(other.sonar) + sign * off;
-      if (way.dot(other.axis) > std::cos(settings_.post_cone) && std::abs(at - end.u) < kPostNear)
+      if (way.dot(other.axis) > cone && std::abs(at - end.u) < kPostNear)
         posts.emplace_back(at, &other);
     }
   }

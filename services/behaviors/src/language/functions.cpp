@@ -74,6 +74,7 @@ void occ_plane(Call& call, const double* a, double* out) {
 const std::vector<Vec2>& near(Call& call, double within) {
   if (call.near_within < within) {
     call.near.clear();
+    call.near.reserve(call.context->lps.obstacles().size());
     for (const Vec2& p : call.context->lps.obstacles())
       if (p.squaredNorm() < within * within)
         call.near.push_back(p);

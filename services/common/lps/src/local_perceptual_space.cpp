@@ -81,22 +81,24 @@ void LocalPerceptualSpace::take(const SonarReading& reading, const Pose& robot_i
   if (mount == settings_.sonars.end())
     return;  // a sonar that the robot's description does not place
   const Pose sonar_in_odom = compose(robot_in_odom, mount->in_robot);
-  const Vec2 place = sonar_in_odom.position() + reading.range * sonar_in_odom.direction();
+  const auto place = [&]() -> Vec2 {
+    return sonar_in_odom.position() + reading.range * sonar_in_odom.direction();
+  };
   const bool near = reading.echo && reading.range <= settings_.front_max_range;
   switch (feeds(mount->in_robot)) {
     case Feeds::front:
       if (near)
-        front_.add(place, robot_in_odom_);
+        front_.add(place(), robot_in_odom_);
       else
         front_.add_miss();
       break;
     case Feeds::left:
       if (reading.echo)
-        left_.add(place, robot_in_odom_);
+        left_.add(place(), robot_in_odom_);
       break;
     case Feeds::right:
       if (reading.echo)
-        right_.add(place, robot_in_odom_);
+        right_.add(place(), robot_in_odom_);
       break;
     case Feeds::none:
       break;

@@ -131,7 +131,7 @@ void ObstacleMemory::shift(long columns, long rows) {
     for (long column = std::max(part.begin - columns, kept.begin);
          column < std::min(part.end - columns, kept.end); ++column)
       if (to[column] > 0.0F)
-        put(static_cast<std::size_t>(row * n + column), to[column]);
+        put(row, column, to[column]);
   }
 }
 
@@ -145,15 +145,13 @@ void ObstacleMemory::fade() {
   unit_ = 1.0F;
 }
 
-void ObstacleMemory::put(std::size_t cell, float belief) {
-  beliefs_[cell] = belief;
-  const std::size_t row = cell / held_.size();
-  const std::size_t column = cell % held_.size();
-  const auto at = static_cast<long>(column);
-  Part& held = held_[row];
-  held.widen(at, at + 1);
+void ObstacleMemory::put(long row, long column, float belief) {
+  beliefs_[index(row, column)] = belief;
+  held_[static_cast<std::size_t>(row)].widen(column, column + 1);
+  const auto bit = static_cast<std::size_t>(column);
   if (belief >= narrow(settings_.obstacle) * unit_)
-    marks_[row * words_ + column / kBits] |= std::uint64_t{1} << (column % kBits);
+    marks_[static_cast<std::size_t>(row) * words_ + bit / kBits] |= std::uint64_t{1}
+                                                                    << (bit % kBits);
 }
 
 SAPHIRA_WIDE void ObstacleMemory::see_columns(const Pose& frame, double cosine, double sine,
@@ -172,7 +170,7 @@ SAPHIRA_WIDE void ObstacleMemory::see_columns(const Pose& frame, double cosine, 
   }
 }
 
-void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held) {
+SAPHIRA_WIDE void ObstacleMemory::look_along(const Pose& sonar, double range, bool only_held) {
   constexpr double kSlack = 0.1;  // [cells] against rounding
   const double cell = settings_.cell;
   const long n = settings_.cells;
@@ -230,12 +228,14 @@ void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt)
   pass(range, doubt);
 }
 
-void ObstacleMemory::find_arc(double range) {
+SAPHIRA_WIDE void ObstacleMemory::find_arc(double range) {
   const double cell = settings_.cell;
   const double inner = std::max(range - settings_.thickness - cell, 0.0);
   const float edge = narrow(edge_);
   const float arc = narrow(range);
   const float thickness = narrow(settings_.thickness);
+  const float* const x = columns_.x.data();
+  const float* const y = columns_.y.data();
   arc_.clear();
   for (const ConeRow& row : cone_) {
     const long count = row.end - row.begin;
@@ -247,23 +247,24 @@ void ObstacleMemory::find_arc(double range) {
     const auto column = [&](double dx) {
       return row.begin + std::clamp(static_cast<long>((dx - row.dx) / cell + 0.5), 0L, count);
     };
-    const long left = column(-half) + 1;
-    const long right = column(half) - 1;
-    for (long i = row.begin; i < row.end; ++i) {
-      if (i == left && left < right)
-        i = right;
-      const auto at = static_cast<std::size_t>(i);
-      const float along = columns_.x[at] + row.x;
-      const float across = std::abs(columns_.y[at] + row.y);
-      const float rim = edge * along;
-      if (along <= 0.0F || across > rim)
-        continue;
-      const float distance = std::sqrt(along * along + across * across);
-      if (std::abs(distance - arc) > thickness)
-        continue;
-      const std::size_t index = static_cast<std::size_t>(row.number) * held_.size() + at;
-      arc_.push_back({index, std::exp(beliefs_[index] / unit_) * (1.0F - 0.5F * (across / rim))});
-    }
+    const long left = std::min(column(-half) + 1, row.end);
+    const long right = std::max(column(half) - 1, left);
+    const float* const beliefs = &beliefs_[index(row.number, 0)];
+    const auto find = [&](long i, long end) {
+      for (; i < end; ++i) {
+        const float along = x[i] + row.x;
+        const float across = std::abs(y[i] + row.y);
+        const float rim = edge * along;
+        if (along <= 0.0F || across > rim)
+          continue;
+        const float distance = std::sqrt(along * along + across * across);
+        if (std::abs(distance - arc) <= thickness)
+          arc_.push_back(
+              {row.number, i, std::exp(beliefs[i] / unit_) * (1.0F - 0.5F * (across / rim))});
+      }
+    };
+    find(row.begin, left);
+    find(right, row.end);
   }
 }
 
@@ -278,7 +279,8 @@ void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
   for (const Arc& arc : arc_)
     likeliest = std::max(likeliest, arc.likely);
   for (const Arc& arc : arc_)
-    put(arc.cell, std::min(beliefs_[arc.cell] + seen * arc.likely / likeliest, most));
+    put(arc.row, arc.column,
+        std::min(beliefs_[index(arc.row, arc.column)] + seen * arc.likely / likeliest, most));
 }
 
 void ObstacleMemory::free_before(const Pose& sonar_in_odom, double range) {
@@ -297,29 +299,29 @@ void ObstacleMemory::touch(const Vec2& at_in_odom) {
       const Vec2 middle((static_cast<double>(column + column0_) + 0.5) * cell,
                         (static_cast<double>(row + row0_) + 0.5) * cell);
       if ((middle - at_in_odom).norm() <= kTouched * cell)
-        put(static_cast<std::size_t>(row * n + column), narrow(settings_.most) * unit_);
+        put(row, column, narrow(settings_.most) * unit_);
     }
 }
 
-void ObstacleMemory::collect(const Pose& robot_in_odom) {
+SAPHIRA_WIDE void ObstacleMemory::collect(const Pose& robot_in_odom) {
   points_.clear();
   const double c = std::cos(robot_in_odom.th);
   const double s = std::sin(robot_in_odom.th);
   see_columns(robot_in_odom, c, s, 0, settings_.cells);
   const float obstacle = narrow(settings_.obstacle) * unit_;
   const auto marked = [](std::uint64_t marks) { return marks != 0; };
-  for (auto at = marks_.begin(); (at = std::find_if(at, marks_.end(), marked)) != marks_.end();
-       ++at) {
-    const auto number = static_cast<std::size_t>(at - marks_.begin());
-    const std::size_t row = number / words_;
-    const std::size_t column0 = number % words_ * kBits;
-    const double dy = (static_cast<double>(static_cast<long>(row) + row0_) + 0.5) * settings_.cell -
-                      robot_in_odom.y;
+  std::uint64_t* const begin = marks_.data();
+  std::uint64_t* const end = begin + marks_.size();
+  for (std::uint64_t* at = begin; (at = std::find_if(at, end, marked)) != end; ++at) {
+    const auto number = static_cast<std::size_t>(at - begin);
+    const auto row = static_cast<long>(number / words_);
+    const auto column0 = static_cast<long>(number % words_ * kBits);
+    const double dy = (static_cast<double>(row + row0_) + 0.5) * settings_.cell - robot_in_odom.y;
     const double row_x = s * dy;
     const double row_y = c * dy;
-    const float* const beliefs = &beliefs_[row * held_.size() + column0];
-    const float* const x = &columns_.x[column0];
-    const float* const y = &columns_.y[column0];
+    const float* const beliefs = &beliefs_[index(row, column0)];
+    const float* const x = columns_.x.data() + column0;
+    const float* const y = columns_.y.data() + column0;
     for (std::uint64_t left = *at; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       if (beliefs[i] < obstacle)

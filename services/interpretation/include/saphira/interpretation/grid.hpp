@@ -122,8 +122,11 @@ class Grid {
   std::array<std::int16_t, 256> weighed_{};  // a bin's log odds, by its evidence
   std::vector<double> probabilities_;        // by total log odds from -kMostTotal on
   std::vector<std::uint8_t> bytes_;          // the same times 200
-  std::vector<float> detections_;            // that give one more step than their index
-  std::vector<int> least_steps_;             // by probability in parts of kFine
+  struct FreeSteps {
+    float limit;  // of the probability; from it on one step more
+    std::uint8_t steps;
+  };
+  std::vector<FreeSteps> free_steps_;  // by probability in parts of kFine
   double prior_ = 0.0;
   std::map<TileKey, Tile> tiles_;
   std::vector<TileKey> dropped_;

@@ -90,7 +90,8 @@ class ObstacleMemory {
  private:
   /// A cell of the arc of an echo.
   struct Arc {
-    std::size_t cell;
+    long row;
+    long column;
     float likely;
   };
 
@@ -115,7 +116,10 @@ class ObstacleMemory {
   void find_arc(double range);
   void shift(long columns, long rows);
   void fade();
-  void put(std::size_t cell, float belief);
+  void put(long row, long column, float belief);
+  std::size_t index(long row, long column) const {
+    return static_cast<std::size_t>(row * settings_.cells + column);
+  }
 
   MemorySettings settings_;
   double edge_;  ///< tangent of the cone's half angle
