@@ -7,6 +7,7 @@
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/printer.hpp"
 #include "saphira/teleop/pilot.hpp"
+#include "saphira/watch/halt.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -15,8 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kAgain{20};        ///< between two commands: the topic is best effort
-constexpr double kConfirmPatience = 2.0;  ///< [s] until a missing confirmation is reported
+constexpr milliseconds kAgain{20};  ///< between two commands: the topic is best effort
 constexpr double kResetLimit = 5.0;
 
 constexpr const char* kOtherStop = "; saphira goal stop, which is anybody's, stops the robot too";
@@ -29,40 +29,29 @@ class Button {
 
   /// Presses until every bridge of this name confirms the latch, without a time limit.
   int press(const bus::Stop& stop) {
-    double told = 0.0;
-    double after = 0.0;
+    watch::Halt halt;
     pilot_.press(source_);
     stops_.emplace(node_.writer(bus::topics::kDriveEstop));  // a member may have the reset alone
     while (!stop.requested()) {
       write(false);
       node_.wait(kAgain, &stop);
       poll();
+      const double now = seconds_since(began_);
       const bool all = bridges_.all(is_latched);
-      if (!all)
-        after = 0.0;
-      else if (after == 0.0)
-        after = seconds_since(began_);
+      const watch::Halt::News news = halt.update(all, now);
       if (all && bridges_.complete()) {
         // Latched: the bridge holds the stop without us.
         while (write(true))
           node_.wait(milliseconds(5));
         print("%s: %s (confirmed by the bridge%s after %.2f s)%s\n",
               called(node_.options().robot).c_str(), latched(*bridges_.newest()).c_str(),
-              bridges_.several().c_str(), after, bridges_.names().c_str());
+              bridges_.several().c_str(), now - halt.lasts(now), bridges_.names().c_str());
         return bus::kExitOk;
       }
-      if (all || seconds_since(began_) < told + kConfirmPatience)
-        continue;
-      told = seconds_since(began_);
-      if (bridges_.count() > 1) {
-        complain("saphira: NOT CONFIRMED by each bridge%s; not by that of %s\n",
-                 bridges_.several().c_str(), bridges_.not_so(is_latched).c_str());
-        continue;
-      }
-      complain(
-          "saphira: NOT CONFIRMED: no bridge has answered for %.0f s. Stop the robot by its own "
-          "switch. (%s.) This goes on trying; Ctrl-C ends it.\n",
-          told, why_nobody().c_str());
+      if (news == watch::Halt::News::not_confirmed)
+        complain(
+            "saphira: %s\n",
+            bridges_.unconfirmed(bridges_.not_so(is_latched), halt.lasts(now), processes_).c_str());
     }
     complain("saphira: ended without a confirmation: whether the robot is stopped is not known\n");
     return bus::kExitFailed;
@@ -75,9 +64,10 @@ class Button {
     bool all_said = true;
     for (const v1::Answer& end : ends) {
       if (!bus::well(end.code)) {
-        complain("saphira: not reset: %s\n", end.code == v1::ANSWER_NOBODY
-                                                 ? ("no bridge is heard; " + why_nobody()).c_str()
-                                                 : end.text.c_str());
+        complain("saphira: not reset: %s\n",
+                 end.code == v1::ANSWER_NOBODY
+                     ? ("no bridge is heard; " + who_is_there(processes_)).c_str()
+                     : end.text.c_str());
         return bus::kExitFailed;
       }
       if (!end.text.empty())
@@ -122,8 +112,6 @@ class Button {
     bridges_.poll();
   }
   bool released() const { return bridges_.all(is_free); }
-
-  std::string why_nobody() const { return who_is_there(processes_); }
 
   Clock::time_point began_ = Clock::now();
   bus::Node node_;
