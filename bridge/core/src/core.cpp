@@ -100,7 +100,7 @@ void Core::mind_silence(double now) {
     return;
   }
   if (now - std::max(session_.last_packet, session_.last_heard) > kDead)
-    return lost("robot link silent", now);
+    return lost(robot_condition(now).reason, now);
   // The link may live, as with a simulator whose time stands.
   if (session_.silent && !stops_.empty() &&
       now - std::max(session_.last_packet, stops_.front().asked) > kDead)
@@ -448,7 +448,7 @@ double Core::due(double now) const {
   double until = now + kCycle;
   if (flush_at_ > 0.0)
     until = std::min(until, flush_at_);
-  if (!settings_.lockstep && grant_.role != Role::none)
+  if (!settings_.lockstep && in_session() && grant_.role != Role::none)
     until = std::min(until, expires_at_);
   if (may_connect(now) && connection_.state() != State::closed && !connection_.open())
     until = std::min(until, connection_.due());
