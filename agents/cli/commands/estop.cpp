@@ -61,7 +61,6 @@ class Button {
     bus::RequestClient resets(node_, bus::topics::kEstopReset, source_);  // of operators alone
     const std::vector<v1::Answer> ends = resets.ask_each(
         bus::request("reset"), kResetLimit, bridges_.servers(), &stop, [this] { poll(); });
-    bool all_said = true;
     for (const v1::Answer& end : ends) {
       if (!bus::well(end.code)) {
         complain("saphira: not reset: %s\n",
@@ -70,34 +69,13 @@ class Button {
                      : end.text.c_str());
         return bus::kExitFailed;
       }
-      if (!end.text.empty())
-        print("%s\n", end.text.c_str());
-      all_said = all_said && !end.text.empty();
+      print("%s\n", end.text.c_str());
     }
-    if (all_said)
-      return bus::kExitOk;
-    // The next grant shows the release of the stop, and autonomy's wait.
-    while (!stop.requested() && seconds_since(began_) < kResetLimit &&
-           (!bridges_.complete() || !released())) {
-      node_.wait(kAgain, &stop);
-      poll();
-    }
-    if (!released()) {
-      complain("saphira: not reset by each bridge%s; not by that of %s\n",
-               bridges_.several().c_str(), bridges_.not_so(is_free).c_str());
-      return bus::kExitFailed;
-    }
-    const v1::Grant& grant = *bridges_.newest();
-    print(
-        "the emergency stop%s is reset; the robot stands until a new command: %s\n",
-        bridges_.several().c_str(),
-        grant.waits_for_hand_back ? latched(grant).c_str() : "saphira goal ..., or saphira drive");
     return bus::kExitOk;
   }
 
  private:
   static bool is_latched(const v1::Grant& one) { return one.estopped; }
-  static bool is_free(const v1::Grant& one) { return !one.estopped; }
 
   /// False where there is nothing more to say.
   bool write(bool latched) {
@@ -111,8 +89,6 @@ class Button {
     processes_.poll();
     bridges_.poll();
   }
-  bool released() const { return bridges_.all(is_free); }
-
   Clock::time_point began_ = Clock::now();
   bus::Node node_;
   std::optional<bus::Writer<v1::MotorCommand>> stops_;
