@@ -13,6 +13,7 @@
 #include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/introspect.hpp"
+#include "saphira/bus/sender.hpp"
 #include "saphira/cli/talk_words.hpp"
 #include "watch.hpp"
 
@@ -160,7 +161,18 @@ int list_one(const bus::NodeOptions& options, const bus::Stop& stop) {
   std::map<std::pair<std::uint64_t, std::uint64_t>, bus::Sample<v1::Trigger>> set;
   poll_for(node, listening_time(node), stop, [&] {
     processes.poll();
-    keep_newest(agents, known, [](const v1::Agent& agent) { return agent.id; });
+    for (auto& sample : agents.take()) {
+      v1::Agent& agent = sample.data;
+      if (sample.info.disposed) {
+        known.erase(agent.id);
+        continue;
+      }
+      // A program may call itself as it likes, also "robot": its certificate's member is said too.
+      const Checked member = bus::asker_of(sample.info);
+      if (member && member->role != "services" && member->role != "robot")
+        agent.name = named(agent.name, member);
+      known[agent.id] = std::move(agent);
+    }
     for (const auto& sample : triggers.take()) {
       const std::pair<std::uint64_t, std::uint64_t> id{sample.data.id.writer,
                                                        sample.data.id.number};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/watch/roll.hpp"
 #include "watch.hpp"
@@ -17,7 +18,7 @@ class Bridges {
       : node_(node),
         census_(node),
         grants_(node.reader(bus::topics::kGrant)),
-        roll_(std::chrono::duration<double>(listening_time(node)).count()),
+        roll_(quiet(node)),
         robot_(node.options().robot),
         every_robot_(node.options().robot == kEveryRobot) {}
 
@@ -69,16 +70,26 @@ class Bridges {
         so.insert(writer);
     return without(so);
   }
-  /// " of 2 robots of this name: give one of them another (--robot)"; empty with one bridge.
+  /// " of 2 robots of this name"; empty with one bridge.
   std::string several() const {
     if (count() < 2)
       return {};
-    return " of " + std::to_string(count()) + " robots" +
-           (every_robot_ ? "" : " of this name: give one of them another (--robot)");
+    return " of " + std::to_string(count()) + " robots" + (every_robot_ ? "" : " of this name");
   }
-  /// ": ant, bee"; empty where there are no several robots.
+  /// ": ant, bee", or the remedy for robots of one name; empty with one bridge.
   std::string names() const {
-    return every_robot_ && count() > 1 ? ": " + joined(roll_.robots()) : "";
+    if (count() < 2)
+      return {};
+    return every_robot_ ? ": " + joined(roll_.robots()) : "; give one of them another (--robot)";
+  }
+  /// The words for a stop that these robots' bridges have not confirmed.
+  std::string unconfirmed(const std::string& missing, double seconds,
+                          const Processes& processes) const {
+    return format(
+        "NOT CONFIRMED%s for %.0f s: %s. Stop the robot by its own switch. This goes on trying; "
+        "Ctrl-C ends it.",
+        count() < 2 ? "" : (" by each bridge" + several()).c_str(), seconds,
+        count() < 2 ? who_is_there(processes).c_str() : ("not by that of " + missing).c_str());
   }
 
  private:
@@ -87,6 +98,14 @@ class Bridges {
     v1::Grant grant;
     Clock::time_point came;
   };
+  /// [s] after which all bridges are found. A second bridge of this robot's name on this machine
+  /// has announced itself twice by then; other robots and other machines have more time.
+  static double quiet(const bus::Node& node) {
+    const bus::NodeOptions& options = node.options();
+    if (options.robot != kEveryRobot && options.profile == bus::Profile::host && !node.identity())
+      return 0.5;
+    return std::chrono::duration<double>(listening_time(node)).count();
+  }
   static double now() {
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
   }

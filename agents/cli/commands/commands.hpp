@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "run_folder.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/units.hpp"
 #include "saphira/bus/node.hpp"
@@ -86,6 +87,15 @@ inline CLI::Validator number_in_unit(const std::string& unit) {
             return value ? std::string() : "expected a number in " + unit + ", found " + found;
           },
           ""};
+}
+
+/// The values of --robot and --domain, or of their variables, where they were given.
+inline FilesOf given_bus(const CLI::App& root) {
+  const auto value = [&](const char* option) {
+    const CLI::Option& one = *root.get_option(option);
+    return one.count() > 0 ? one.as<std::string>() : std::string();
+  };
+  return {value("--robot"), value("--domain")};
 }
 
 /// Says why the command has failed; its exit code.

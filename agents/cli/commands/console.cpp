@@ -23,12 +23,12 @@ int become(const std::string& program, const bus::NodeOptions& options,
 }
 
 /// A file's name is its time and the event: 2026-05-04-101530-goal-failed.mcap.
-int box() {
-  const std::vector<std::string> files = box_files();
+int box(const FilesOf& bus) {
+  const std::vector<std::string> files = box_files(bus);
   if (files.empty())
-    return failed(
-        "nothing is kept yet: saphira up keeps the last minute after a stop, a failed goal, or the "
-        "loss of a program, the robot or its place");
+    return failed("nothing is kept yet" + words_of(bus) +
+                  ": saphira up keeps the last minute after a stop, a failed goal, or the "
+                  "loss of a program, the robot or its place");
   for (const std::string& file : files)
     std::cout << file << '\n';
   return bus::kExitOk;
@@ -61,7 +61,9 @@ void add_programs(CLI::App& app, Chosen& chosen) {
 void add_box(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "box", "The recordings of the last minute after an event, the newest first");
-  chosen.when(command, [](const bus::NodeOptions&, const bus::Stop&) { return box(); });
+  chosen.apart.insert(command);
+  chosen.when(command,
+              [&app](const bus::NodeOptions&, const bus::Stop&) { return box(given_bus(app)); });
 }
 
 }  // namespace saphira::cli

@@ -7,6 +7,7 @@
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/printer.hpp"
 #include "saphira/teleop/pilot.hpp"
+#include "saphira/watch/halt.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -15,8 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kAgain{20};        ///< between two commands: the topic is best effort
-constexpr double kConfirmPatience = 2.0;  ///< [s] until a missing confirmation is reported
+constexpr milliseconds kAgain{20};  ///< between two commands: the topic is best effort
 constexpr double kResetLimit = 5.0;
 
 constexpr const char* kOtherStop = "; saphira goal stop, which is anybody's, stops the robot too";
@@ -29,40 +29,29 @@ class Button {
 
   /// Presses until every bridge of this name confirms the latch, without a time limit.
   int press(const bus::Stop& stop) {
-    double told = 0.0;
-    double after = 0.0;
+    watch::Halt halt;
     pilot_.press(source_);
     stops_.emplace(node_.writer(bus::topics::kDriveEstop));  // a member may have the reset alone
     while (!stop.requested()) {
       write(false);
       node_.wait(kAgain, &stop);
       poll();
+      const double now = seconds_since(began_);
       const bool all = bridges_.all(is_latched);
-      if (!all)
-        after = 0.0;
-      else if (after == 0.0)
-        after = seconds_since(began_);
+      const watch::Halt::News news = halt.update(all, now);
       if (all && bridges_.complete()) {
         // Latched: the bridge holds the stop without us.
         while (write(true))
           node_.wait(milliseconds(5));
         print("%s: %s (confirmed by the bridge%s after %.2f s)%s\n",
               called(node_.options().robot).c_str(), latched(*bridges_.newest()).c_str(),
-              bridges_.several().c_str(), after, bridges_.names().c_str());
+              bridges_.several().c_str(), now - halt.lasts(now), bridges_.names().c_str());
         return bus::kExitOk;
       }
-      if (all || seconds_since(began_) < told + kConfirmPatience)
-        continue;
-      told = seconds_since(began_);
-      if (bridges_.count() > 1) {
-        complain("saphira: NOT CONFIRMED by each bridge%s; not by that of %s\n",
-                 bridges_.several().c_str(), bridges_.not_so(is_latched).c_str());
-        continue;
-      }
-      complain(
-          "saphira: NOT CONFIRMED: no bridge has answered for %.0f s. Stop the robot by its own "
-          "switch. (%s.) This goes on trying; Ctrl-C ends it.\n",
-          told, why_nobody().c_str());
+      if (news == watch::Halt::News::not_confirmed)
+        complain(
+            "saphira: %s\n",
+            bridges_.unconfirmed(bridges_.not_so(is_latched), halt.lasts(now), processes_).c_str());
     }
     complain("saphira: ended without a confirmation: whether the robot is stopped is not known\n");
     return bus::kExitFailed;
@@ -72,42 +61,21 @@ class Button {
     bus::RequestClient resets(node_, bus::topics::kEstopReset, source_);  // of operators alone
     const std::vector<v1::Answer> ends = resets.ask_each(
         bus::request("reset"), kResetLimit, bridges_.servers(), &stop, [this] { poll(); });
-    bool all_said = true;
     for (const v1::Answer& end : ends) {
       if (!bus::well(end.code)) {
-        complain("saphira: not reset: %s\n", end.code == v1::ANSWER_NOBODY
-                                                 ? ("no bridge is heard; " + why_nobody()).c_str()
-                                                 : end.text.c_str());
+        complain("saphira: not reset: %s\n",
+                 end.code == v1::ANSWER_NOBODY
+                     ? ("no bridge is heard; " + who_is_there(processes_)).c_str()
+                     : end.text.c_str());
         return bus::kExitFailed;
       }
-      if (!end.text.empty())
-        print("%s\n", end.text.c_str());
-      all_said = all_said && !end.text.empty();
+      print("%s\n", end.text.c_str());
     }
-    if (all_said)
-      return bus::kExitOk;
-    // The next grant shows the release of the stop, and autonomy's wait.
-    while (!stop.requested() && seconds_since(began_) < kResetLimit &&
-           (!bridges_.complete() || !released())) {
-      node_.wait(kAgain, &stop);
-      poll();
-    }
-    if (!released()) {
-      complain("saphira: not reset by each bridge%s; not by that of %s\n",
-               bridges_.several().c_str(), bridges_.not_so(is_free).c_str());
-      return bus::kExitFailed;
-    }
-    const v1::Grant& grant = *bridges_.newest();
-    print(
-        "the emergency stop%s is reset; the robot stands until a new command: %s\n",
-        bridges_.several().c_str(),
-        grant.waits_for_hand_back ? latched(grant).c_str() : "saphira goal ..., or saphira drive");
     return bus::kExitOk;
   }
 
  private:
   static bool is_latched(const v1::Grant& one) { return one.estopped; }
-  static bool is_free(const v1::Grant& one) { return !one.estopped; }
 
   /// False where there is nothing more to say.
   bool write(bool latched) {
@@ -121,10 +89,6 @@ class Button {
     processes_.poll();
     bridges_.poll();
   }
-  bool released() const { return bridges_.all(is_free); }
-
-  std::string why_nobody() const { return who_is_there(processes_); }
-
   Clock::time_point began_ = Clock::now();
   bus::Node node_;
   std::optional<bus::Writer<v1::MotorCommand>> stops_;

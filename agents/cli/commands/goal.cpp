@@ -15,6 +15,7 @@
 #include "saphira/bus/request_client.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/printer.hpp"
+#include "saphira/watch/halt.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -23,9 +24,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kConfirmPatience = 2.0;   ///< [s] until a missing confirmation is reported
-constexpr double kRestPatience = 5.0;      ///< [s] in which a robot is at rest
-constexpr double kMostRest = 30.0;         ///< [s] until the wait for its rest is given up
 constexpr double kApprovalPatience = 4.0;  ///< [s] for an answer
 constexpr double kUnanswered = 15.0;       ///< [s] until a goal without any answer is given up
 constexpr double kSilent = 3.0;            ///< [s] until missing intentions are reported
@@ -83,19 +81,16 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   const auto began = Clock::now();
   const std::string robot = called(node_options.robot);
   std::set<bus::WriterId> answered;
-  std::optional<double> heard;
-  bool refused = false;
-  double told = 0.0;
+  bool heard = false;
+  watch::Halt halt;
   bus::Stop over;  // that of the signals, or the end of patience
   const auto hear = [&](const v1::Answer& answer) {
-    if (!heard) {
-      heard = told = seconds_since(began);
+    if (!std::exchange(heard, true))
       print("%s: %s (confirmed by the bridge after %.2f s)\n", robot.c_str(), answer.text.c_str(),
-            *heard);
-    }
+            seconds_since(began));
     if (!bus::ended(answer.code))
       return;
-    refused = refused || !bus::well(answer.code);
+    halt.end(answer.code);
     if (bus::well(answer.code))
       print("%s, after %.2f s\n", answer.text.c_str(), seconds_since(began));
     else
@@ -105,27 +100,17 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
     processes.poll();
     bridges.poll();
     const double now = seconds_since(began);
-    const bool confirmed = heard && bridges.without(answered).empty();
-    if (stop.requested() || (confirmed && now > *heard + kMostRest))
+    const watch::Halt::News news = halt.update(heard && bridges.without(answered).empty(), now);
+    if (stop.requested() || news == watch::Halt::News::given_up)
       over.request();
-    if (now <= told + (confirmed && told == *heard ? kRestPatience : kConfirmPatience))
-      return;
-    told = now;
-    if (confirmed) {
-      const std::string trouble = situation::condition(processes.situation(), "bridge").words;
+    else if (news == watch::Halt::News::not_at_rest)
       complain(
-          "saphira: NOT SEEN AT REST for %.0f s. Stop the robot by its own switch. (The bridge "
-          "%s.) This goes on for %.0f s; Ctrl-C ends it.\n",
-          now - *heard, trouble.empty() ? "does not say why" : trouble.c_str(), kMostRest);
-      return;
-    }
-    const std::string who = bridges.count() > 0
-                                ? "not by the bridge of " + bridges.without(answered)
-                                : who_is_there(processes);
-    complain(
-        "saphira: NOT CONFIRMED for %.0f s. Stop the robot by its own switch. (%s.) This goes on "
-        "trying; Ctrl-C ends it.\n",
-        told, who.c_str());
+          "saphira: NOT SEEN AT REST for %.0f s. Stop the robot by its own switch. (%s.) This goes "
+          "on for %.0f s; Ctrl-C ends it.\n",
+          halt.lasts(now), who_is_there(processes).c_str(), watch::Halt::kMost);
+    else if (news == watch::Halt::News::not_confirmed)
+      complain("saphira: %s\n",
+               bridges.unconfirmed(bridges.without(answered), halt.lasts(now), processes).c_str());
   };
   stops.ask_each(bus::request("stop"), std::numeric_limits<double>::infinity(),
                  bridges.servers(&answered), &over, meanwhile, hear);
@@ -137,7 +122,7 @@ int stop_robot(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   }
   if (bridges.count() > 1)
     print("this was a stop%s%s\n", bridges.several().c_str(), bridges.names().c_str());
-  return refused ? bus::kExitFailed : bus::kExitOk;
+  return halt.well() ? bus::kExitOk : bus::kExitFailed;
 }
 
 /// Tells once when the program that carries out goals is silent, and when it is back.

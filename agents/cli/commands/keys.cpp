@@ -92,14 +92,14 @@ struct AuditWords {
   std::string known;
 };
 
-int audit(const AuditWords& words) {
+int audit(const AuditWords& words, const FilesOf& bus) {
   std::string file = words.file;
   if (file.empty()) {
-    const std::vector<std::string> all = audit_files();
+    const std::vector<std::string> all = audit_files(bus);
     if (all.empty())
-      throw UnusableFile(
-          "this machine has no audit: the bridge of a robot keeps it, where saphira "
-          "up or the service runs it");
+      throw UnusableFile("this machine has no audit" + words_of(bus) +
+                         ": the bridge of a robot keeps it, where saphira "
+                         "up or the service runs it");
     if (all.size() > 1)
       std::cerr << "saphira: " << all.front() << ", the newest; others: "
                 << joined(std::vector<std::string>(
@@ -163,8 +163,9 @@ void add_audit(CLI::App& app, Chosen& chosen) {
   command->add_option("file", words->file, "the audit [the newest of this machine]");
   command->add_flag("--check", words->check, "only say if it is whole and unchanged");
   command->add_option("--known", words->known, "a hash noted earlier, which has to be there");
-  chosen.when(command,
-              [words](const bus::NodeOptions&, const bus::Stop&) { return audit(*words); });
+  chosen.when(command, [words, &app](const bus::NodeOptions&, const bus::Stop&) {
+    return audit(*words, given_bus(app));
+  });
 }
 
 }  // namespace saphira::cli

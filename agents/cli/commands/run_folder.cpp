@@ -316,14 +316,22 @@ std::vector<RunningBus> running_buses() {
 
 namespace {
 
-/// The files with that ending in `folder` of each run folder, the newest first.
-std::vector<std::string> newest_files(const std::string& folder, const std::string& ending) {
+/// True for a deployment's folder FILE-ROBOT-DOMAIN of that bus.
+bool is_of(const std::string& name, const FilesOf& bus) {
+  const std::size_t dash = name.rfind('-');
+  return dash != std::string::npos && (bus.domain.empty() || name.substr(dash + 1) == bus.domain) &&
+         (bus.robot.empty() || name.substr(0, dash).ends_with("-" + bus.robot));
+}
+
+/// The files with that ending in `folder` of each run folder of that bus, the newest first.
+std::vector<std::string> newest_files(const std::string& folder, const std::string& ending,
+                                      const FilesOf& bus) {
   std::vector<std::filesystem::directory_entry> found;
   std::error_code none;
   for (const std::string& all : all_folders())
     for (const auto& run : std::filesystem::directory_iterator(all, none))
       for (const auto& file : std::filesystem::directory_iterator(run.path() / folder, none))
-        if (file.path().extension() == ending)
+        if (file.path().extension() == ending && is_of(run.path().filename(), bus))
           found.push_back(file);
   std::ranges::sort(found, [&](const auto& one, const auto& other) {
     return one.last_write_time(none) > other.last_write_time(none);
@@ -336,12 +344,17 @@ std::vector<std::string> newest_files(const std::string& folder, const std::stri
 
 }  // namespace
 
-std::vector<std::string> audit_files() {
-  return newest_files("", ".audit");
+std::string words_of(const FilesOf& bus) {
+  return (bus.robot.empty() ? "" : " of robot " + bus.robot) +
+         (bus.domain.empty() ? "" : " in domain " + bus.domain);
 }
 
-std::vector<std::string> box_files() {
-  return newest_files("box", ".mcap");
+std::vector<std::string> audit_files(const FilesOf& bus) {
+  return newest_files("", ".audit", bus);
+}
+
+std::vector<std::string> box_files(const FilesOf& bus) {
+  return newest_files("box", ".mcap", bus);
 }
 
 std::string keep_held() {

@@ -43,11 +43,18 @@ std::vector<Running> running_deployments();
 /// The path of the log file of that deployment, for its output without a terminal.
 std::string log_of(const std::string& name);
 
+/// The bus of a deployment whose files are meant.
+struct FilesOf {
+  std::string robot;   ///< empty: any
+  std::string domain;  ///< empty: any
+};
+/// Such as " of robot bee in domain 3"; empty where any is meant.
+std::string words_of(const FilesOf& bus);
 /// The audits of this machine's robots, the newest first: of this user, and of the system's
 /// service.
-std::vector<std::string> audit_files();
+std::vector<std::string> audit_files(const FilesOf& bus);
 /// Likewise the recordings of the last minute after an event.
-std::vector<std::string> box_files();
+std::vector<std::string> box_files(const FilesOf& bus);
 
 /// Lets other commands find this bus, as long as the object lives (running_buses); with a full disk
 /// by a file in memory.

@@ -100,7 +100,7 @@ void Core::mind_silence(double now) {
     return;
   }
   if (now - std::max(session_.last_packet, session_.last_heard) > kDead)
-    return lost("robot link silent", now);
+    return lost(robot_condition(now).reason, now);
   // The link may live, as with a simulator whose time stands.
   if (session_.silent && !stops_.empty() &&
       now - std::max(session_.last_packet, stops_.front().asked) > kDead)

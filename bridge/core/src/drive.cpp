@@ -82,6 +82,7 @@ void Core::command(const DriveCommand& in, double now) {
     session_.edges = in.edges;
     session_.edges_cycle = session_.stamp.cycle;
   }
+  pressed_ = pressed_ || (command.active && command.role == Role::estop);
   driver_spoke_ = driver_spoke_ || (command.role == grant_.role && command.writer == grant_.writer);
   if (!command.active || !drives(command.role))
     return;
@@ -175,7 +176,12 @@ Answer Core::reset_estop(const std::string& source, double now) {
           : v1::AuditEntry{.act = v1::AUDIT_REFUSED,
                            .who = source,
                            .text = "to reset the emergency stop: " + why});
-  return why.empty() ? Answer{} : Answer{AnswerCode::refused, why};
+  if (!why.empty())
+    return {AnswerCode::refused, why};
+  const bool waits = arbiter_.latches().wait != authority::Wait::none;
+  return {AnswerCode::done, std::string("the emergency stop is reset; the robot stands until ") +
+                                (waits ? "autonomy is handed back: saphira drive hand-back"
+                                       : "a new command: saphira goal ..., or saphira drive")};
 }
 
 void Core::answer(double now) {
@@ -194,19 +200,21 @@ void Core::answer(double now) {
 /// there may be none.
 void Core::keep_latches(double now) {
   const authority::Latches& latches = arbiter_.latches();
-  if (latches == kept_)
-    return;
-  if (latches.estopped && !kept_.estopped) {
+  const bool estop = latches.estopped != kept_.estopped;
+  const bool pressed = std::exchange(pressed_, false);
+  if (estop && latches.estopped) {
     put(v1::AuditEntry{
         .act = v1::AUDIT_STOPPED, .who = latches.estop_source, .text = "the emergency stop"});
     warn("emergency stop, pressed by " + latches.estop_source +
          ": the robot stands until saphira estop reset" +
          (settings_.keeps_latches ? "" : " (without --state a restart forgets it)"));
   }
-  const bool estop = latches.estopped != kept_.estopped;
-  kept_ = latches;
-  put(KeepLatches{latches});
-  if (!estop || (in_session() && !settings_.lockstep))
+  if (latches != kept_) {
+    kept_ = latches;
+    put(KeepLatches{latches});
+  }
+  // Whoever presses waits for a grant, at each press.
+  if (in_session() ? !estop || !settings_.lockstep : !estop && !pressed)
     return;
   grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
   told_ = {};

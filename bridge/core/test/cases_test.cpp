@@ -431,7 +431,7 @@ class Bridge : public saphira::test::LinePlayer {
 };
 
 TEST(Bridge, IsAsWritten) {
-  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 81);
+  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 83);
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ function Estopped({link, grant}: {link: Link; grant: Grant}) {
 
 // The information area (manual 2.3.3), and above it in one sentence what goes on.
 function sentence(drive: Drive, robot: RobotState, grant?: Grant, why?: Why): string {
-  if (grant?.estopped) return 'Emergency stop: the robot stands until Reset, and then until it gets a new goal.';
+  if (grant?.estopped) return `Emergency stop: the robot stands until Reset, and then until ${grant.waits_for_hand_back ? 'Hand back: a person drove' : 'it gets a new goal'}.`;
   if (grant?.waits_for_hand_back) return drive.letGoFirst() || (drive.mine() ? 'You have control: hold something to drive, or hand the robot back.' : 'A person drove last: autonomy waits for Hand back.');
   // Of the cycle that it tells of: a program that hangs leaves an old one.
   const age = why && why.epoch === robot.stamp.epoch ? cycle * (robot.stamp.cycle - why.cycle) : 0;

@@ -134,14 +134,14 @@ class Core {
         "slack", slack_)("shown", shown_)("line", line_)("own_deceleration", own_deceleration_)(
         "robot_trouble", robot_trouble_)("permit", permit_)("kept", kept_)("grant", grant_)(
         "told", told_)("guarded", guarded_)("refused_drivers", refused_drivers_)(
-        "grant_changed", grant_changed_)("driver_spoke", driver_spoke_)("expires_at", expires_at_)(
-        "flush_at", flush_at_)("stops", stops_)("numberless_stops", numberless_stops_)(
-        "room", room_)("last_loop", last_loop_)("last_bytes", last_bytes_)(
-        "stale_until", stale_until_)("hold_off", hold_off_)("keeper_alive", keeper_alive_)(
-        "keeper_restarts", keeper_restarts_)("keeper_new_until", keeper_new_until_)(
-        "reported_at", reported_at_)("wait", wait_)("reaction_at", reaction_at_)(
-        "reaction_sum", reaction_sum_)("reaction_max", reaction_max_)("reactions", reactions_)(
-        "late", late_)("steps", steps_);
+        "grant_changed", grant_changed_)("pressed", pressed_)("driver_spoke", driver_spoke_)(
+        "expires_at", expires_at_)("flush_at", flush_at_)("stops", stops_)(
+        "numberless_stops", numberless_stops_)("room", room_)("last_loop", last_loop_)(
+        "last_bytes", last_bytes_)("stale_until", stale_until_)("hold_off", hold_off_)(
+        "keeper_alive", keeper_alive_)("keeper_restarts", keeper_restarts_)(
+        "keeper_new_until", keeper_new_until_)("reported_at", reported_at_)("wait", wait_)(
+        "reaction_at", reaction_at_)("reaction_sum", reaction_sum_)("reaction_max", reaction_max_)(
+        "reactions", reactions_)("late", late_)("steps", steps_);
   }
 
  private:
@@ -258,6 +258,7 @@ class Core {
   authority::Guarded guarded_;
   std::set<std::string> refused_drivers_;  ///< in the audit since the driver changed
   bool grant_changed_ = false;
+  bool pressed_ = false;       ///< the emergency stop, since answer()
   bool driver_spoke_ = false;  ///< the present driver, since the last answer
   double expires_at_ = 0.0;    ///< [s] end of the present driver's lease
   double flush_at_ = 0.0;      ///< [s] time to send without the driver's answer; 0: none
