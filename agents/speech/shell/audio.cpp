@@ -22,12 +22,14 @@ namespace saphira::speech {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kBlock = kRate / 50;
 constexpr std::size_t kMost = 10 * kRate;              // samples in the queue
 constexpr unsigned kLatency = 100'000;                 // [us] of a device
 constexpr std::chrono::milliseconds kAgain{5000};      // between two attempts with a device
 constexpr std::chrono::milliseconds kPollPeriod{200};  // within which a thread notices its end
+constexpr std::chrono::seconds kHang{2};               // without progress of a device
 
 struct ClosePcm {
   void operator()(snd_pcm_t* pcm) const { snd_pcm_close(pcm); }
@@ -87,7 +89,11 @@ std::string speaker_trouble(const std::string& sink) {
 }
 
 Microphone::Microphone(std::string source, std::function<void(const std::string&)> trouble)
-    : source_(std::move(source)), trouble_(std::move(trouble)), thread_([this] { run(); }) {}
+    : source_(std::move(source)),
+      trouble_(std::move(trouble)),
+      at_end_(fs::is_regular_file(source_)),
+      waiting_(at_end_ ? read_sound(read_bytes(source_), source_) : Sound{}),
+      thread_([this] { run(); }) {}
 
 Microphone::~Microphone() {
   stop_ = true;
@@ -106,13 +112,21 @@ bool Microphone::ended() const {
   return at_end_ && waiting_.empty();
 }
 
-/// waits: sound from a file or a pipe is not lost.
+bool Microphone::hangs() const {
+  const std::lock_guard lock(mutex_);
+  return due_ && Clock::now() > *due_;
+}
+
+/// waits: sound from a pipe is not lost.
 void Microphone::put(const Sound& sound, bool waits) {
   std::unique_lock lock(mutex_);
   while (waits && waiting_.size() > kMost && !stop_)
     taken_.wait_for(lock, kPollPeriod);
   waiting_.insert(waiting_.end(), sound.begin(), sound.end());
-  if (!waits && waiting_.size() > kMost)
+  if (waits)
+    return;
+  due_ = Clock::now() + kHang;
+  if (waiting_.size() > kMost)
     waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(kMost));
 }
 
@@ -132,6 +146,10 @@ void Microphone::run() {
     try {
       read_once();
     } catch (const std::exception& error) {
+      {
+        const std::lock_guard lock(mutex_);
+        due_.reset();
+      }
       trouble_(error.what());
       rest();
     }
@@ -139,11 +157,8 @@ void Microphone::run() {
 }
 
 void Microphone::read_once() {
-  if (source_ == "-" || fs::is_regular_file(source_)) {
-    if (source_ == "-")
-      read_pipe(STDIN_FILENO);
-    else
-      put(read_sound(read_bytes(source_), source_), true);
+  if (source_ == "-") {
+    read_pipe(STDIN_FILENO);
     const std::lock_guard lock(mutex_);
     at_end_ = true;
   } else if (fs::is_fifo(source_)) {
@@ -184,6 +199,7 @@ void Microphone::read_pipe(int file) {
 }
 
 void Microphone::read_device() {
+  put({}, false);  // opening it may hang, too
   const Pcm pcm = open_device(source_, SND_PCM_STREAM_CAPTURE);
   trouble_("");
   Sound block(kBlock);
@@ -210,17 +226,29 @@ Speaker::~Speaker() {
 }
 
 void Speaker::play(Sound sound) {
-  if (sink_ == "none")
+  if (sink_ == "none" || hangs())
     return;
   {
     const std::lock_guard lock(mutex_);
+    due_ = speaking_ ? due_ : Clock::now() + kHang;
     speaking_ = true;
     waiting_.push_back(std::move(sound));
   }
   more_.notify_all();
 }
 
+bool Speaker::speaking() const {
+  const std::lock_guard lock(mutex_);
+  return speaking_ && Clock::now() <= due_;
+}
+
+bool Speaker::hangs() const {
+  const std::lock_guard lock(mutex_);
+  return speaking_ && Clock::now() > due_;
+}
+
 void Speaker::run() {
+  trouble_(speaker_trouble(sink_));  // it is opened only to speak
   std::unique_lock lock(mutex_);
   while (true) {
     more_.wait(lock, [this] { return stop_ || !waiting_.empty(); });
@@ -228,6 +256,7 @@ void Speaker::run() {
       return;
     const Sound sound = std::move(waiting_.front());
     waiting_.pop_front();
+    due_ = Clock::now() + kHang + std::chrono::milliseconds(1000 * sound.size() / kRate);
     lock.unlock();
     try {
       play_once(sound);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -23,7 +25,7 @@ std::string speaker_trouble(const std::string& sink);
 class Microphone {
  public:
   /// `trouble` gets, from the thread, the reason for missing sound; an empty text: it comes again.
-  /// A failed device is tried again.
+  /// A failed device is tried again. UnusableFile for a file without sound.
   Microphone(std::string source, std::function<void(const std::string&)> trouble);
   ~Microphone();
   Microphone(const Microphone&) = delete;
@@ -32,6 +34,8 @@ class Microphone {
   Sound take();
   /// True at the end of a file, with an empty queue.
   bool ended() const;
+  /// True while a device gives no sound, and no error either.
+  bool hangs() const;
 
  private:
   void run();
@@ -45,8 +49,9 @@ class Microphone {
   std::function<void(const std::string&)> trouble_;
   mutable std::mutex mutex_;
   std::condition_variable taken_;
+  bool at_end_;
   Sound waiting_;
-  bool at_end_ = false;
+  std::optional<std::chrono::steady_clock::time_point> due_{};  ///< the next sound of a device
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -61,7 +66,9 @@ class Speaker {
   Speaker& operator=(const Speaker&) = delete;
 
   void play(Sound sound);
-  bool speaking() const { return speaking_; }
+  /// True while it plays. A device that hangs does not: the robot hears on.
+  bool speaking() const;
+  bool hangs() const;
 
  private:
   void run();
@@ -70,11 +77,12 @@ class Speaker {
 
   std::string sink_;
   std::function<void(const std::string&)> trouble_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable more_;
   std::deque<Sound> waiting_;
   bool stop_ = false;
-  std::atomic<bool> speaking_{false};
+  bool speaking_ = false;
+  std::chrono::steady_clock::time_point due_;  ///< the end of what it plays
   int files_ = 0;
   std::thread thread_;
 };

@@ -35,10 +35,6 @@ SpeechShell::SpeechShell(bus::Node& node, const SpeechOptions& options)
         speaker_trouble_ = text;
       }) {
   folder_.poll();
-  // Its thread opens it only to speak.
-  std::string trouble = speaker_trouble(options.speaker);
-  const std::lock_guard lock(mutex_);
-  speaker_trouble_ = std::move(trouble);
 }
 
 void SpeechShell::run(const bus::Stop& stop) {
@@ -114,9 +110,13 @@ void SpeechShell::reload() {
 /// Reports the errors of the sound threads, each once.
 void SpeechShell::report() {
   const std::lock_guard lock(mutex_);
-  std::string trouble = microphone_trouble_;
-  if (!speaker_trouble_.empty())
-    trouble += (trouble.empty() ? "" : "; ") + speaker_trouble_;
+  const auto trouble_of = [](const std::string& device, bool hangs, const std::string& told) {
+    return hangs ? "the sound device \"" + device + "\" hangs" : told;
+  };
+  std::string trouble = trouble_of(options_.microphone, microphone_.hangs(), microphone_trouble_);
+  if (const std::string speaker = trouble_of(options_.speaker, speaker_.hangs(), speaker_trouble_);
+      !speaker.empty())
+    trouble += (trouble.empty() ? "" : "; ") + speaker;
   if (trouble == told_)
     return;
   told_ = std::move(trouble);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "saphira/base/text.hpp"
+#include "saphira/speech/agreement.hpp"
 
 namespace saphira::speech {
 namespace {
@@ -57,31 +59,34 @@ void Conversation::listen() {
   listens_for_replies_ = replies;
 }
 
-/// A stop by itself needs no keyword. The words around it are often misheard, and may not turn its
-/// meaning: it would be a stop behind the keyword, too. Returns its word; empty: it is none.
-std::string Conversation::lone_stop(const Recognized& heard) const {
-  if (heard.spotted.empty())
+/// A stop that the grammar of the recognizer has missed: its word; empty: it is none. By itself it
+/// needs no keyword. The words around it are often misheard, and may not turn its meaning.
+std::string Conversation::missed_stop(const Recognized& heard) const {
+  if (heard.spotted.empty() || grammar_.keywords().empty())
     return {};
-  const auto word = std::find_first_of(heard.freely.begin(), heard.freely.end(),
-                                       heard.spotted.begin(), heard.spotted.end());
-  if (word == heard.freely.end())  // "y'all to" is "halt"
-    return heard.spotted.front() != "stop" && heard.freely.size() < kMostAround
-               ? heard.spotted.front()
-               : std::string();
-  if (grammar_.urgent(joined(heard.freely, " ")).alone)
-    return *word;
-  if (heard.freely.size() > kMostAround || grammar_.keywords().empty() ||
-      std::ranges::find(kOtherStops, heard.freely.back()) != kOtherStops.end())
-    return {};
-  const std::string named = grammar_.keywords().front() + " " + joined(heard.freely, " ");
-  return grammar_.urgent(named).meaning ? *word : std::string();
+  const std::vector<std::string>& words = heard.freely;
+  const std::string text = joined(words, " ");
+  const bool behind_keyword =
+      grammar_.urgent(grammar_.keywords().front() + " " + text).meaning.has_value();
+  if (std::ranges::any_of(grammar_.keywords(), [&](const std::string& keyword) {
+        return heard.text == keyword || heard.text.starts_with(keyword + " ");
+      }))
+    return behind_keyword || !is_turned(words, {}) ? heard.spotted.front() : std::string();
+  const auto word = std::ranges::find_first_of(words, heard.spotted);
+  if (word == words.end())  // "y'all to" is "halt"
+    return heard.spotted.front() != "stop" && words.size() < kMostAround ? heard.spotted.front()
+                                                                         : std::string();
+  const bool is_stop = grammar_.urgent(text).alone ||
+                       (behind_keyword && words.size() <= kMostAround &&
+                        std::ranges::find(kOtherStops, words.back()) == kOtherStops.end());
+  return is_stop ? *word : std::string();
 }
 
 Conversation::Outputs Conversation::take(const std::vector<Event>& events) {
   Outputs out;
   for (const Event& event : events) {
     Recognized heard = event.heard;
-    if (const std::string stop = lone_stop(heard); !stop.empty())
+    if (const std::string stop = missed_stop(heard); !stop.empty())
       heard = {Outcome::command, stop, kCertain};
     if (event.kind != Event::Kind::heard || heard.outcome == Outcome::not_for_it)
       continue;
@@ -106,8 +111,13 @@ Conversation::Outputs Conversation::hear(const Sound& sound, bool speaking) {
   return take(recognizer_.hear(sound));
 }
 
+/// A file may end with its last word, which the recognizer hears only in front of a pause.
 Conversation::Outputs Conversation::end() {
-  return take(recognizer_.end());
+  Outputs out = hear(Sound(kRate), false);
+  Outputs last = take(recognizer_.end());
+  out.um = out.um || last.um;
+  std::ranges::move(last.utterances, std::back_inserter(out.utterances));
+  return out;
 }
 
 }  // namespace saphira::speech

@@ -336,24 +336,28 @@ void Recognizer::Self::finish(std::vector<Event>& events) {
   Recognized heard = result(decoder.get());
   const std::vector<std::string> said = words_of(heard.text);
   const bool is_named = !keyword.empty() || (!said.empty() && keywords.contains(said.front()));
-  if (!is_named && seconds(recent) < settings.longest_alone)
-    if (heard.spotted = heard_by(kSpots); !heard.spotted.empty())
-      heard.freely = heard_by(kFree);
   if (heard.outcome == Outcome::command)
     heard.confidence = is_at_once(heard.text) || is_sure(heard) ? kCertain : kUncertain;
+  const bool is_order = is_named && heard.confidence >= kCertain && !keywords.contains(heard.text);
+  if (!is_order && seconds(recent) < settings.longest_alone)
+    if (heard.spotted = heard_by(kSpots); !heard.spotted.empty())
+      heard.freely = heard_by(kFree);
   recent.clear();
   if (!keyword.empty()) {
     heard.text = std::exchange(keyword, {}) + (heard.text.empty() ? "" : " ") + heard.text;
     if (heard.outcome == Outcome::not_for_it)
       heard.outcome = Outcome::addressed;
     search(false);
-  } else if (heard.outcome == Outcome::command && keywords.contains(heard.text)) {
+  } else if (heard.outcome == Outcome::command && keywords.contains(heard.text) &&
+             heard.spotted.empty()) {
     keyword = heard.text;
     attends = settings.attention;
     search(true);
     return;
   }
   events.push_back({Event::Kind::ends});
+  if (keywords.contains(heard.text))
+    heard.outcome = Outcome::addressed;
   if (heard.outcome == Outcome::addressed)
     heard.confidence = kAddressed;
   events.push_back({Event::Kind::heard, heard});

@@ -12,6 +12,9 @@
 namespace saphira::speech {
 namespace {
 
+constexpr int kLeastRate = 11'025;  // [samples/s] words of a telephone are taken for others
+constexpr int kMostRate = 200'000;
+
 /// A file in memory, for libsndfile.
 struct Memory {
   std::string bytes;
@@ -84,9 +87,11 @@ Sound read_sound(const std::string& bytes, const std::string& file) {
   SF_INFO info{};
   const File opened(sf_open_virtual(&io, SFM_READ, &info, &memory));
   if (!opened)
-    throw UnusableFile(file + ": " + sf_strerror(nullptr) + " Expected sound, such as WAV or FLAC");
-  if (info.samplerate < 4000 || info.samplerate > 200'000)
-    throw UnusableFile(file + ": expected 4000 to 200000 samples a second, found " +
+    throw UnusableFile(
+        file + ": it is empty, damaged or of an unknown kind. Expected sound, such as WAV or FLAC");
+  if (info.samplerate < kLeastRate || info.samplerate > kMostRate)
+    throw UnusableFile(file + ": expected " + std::to_string(kLeastRate) + " to " +
+                       std::to_string(kMostRate) + " samples a second, found " +
                        std::to_string(info.samplerate));
   const auto channels = static_cast<std::size_t>(info.channels);
   std::vector<Sound> all(channels);

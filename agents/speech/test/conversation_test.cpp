@@ -61,6 +61,13 @@ TEST_F(ConversationTest, WordsNearAStopAreNone) {
     EXPECT_EQ(hear(said_by("rms", text)), Texts{}) << text;
 }
 
+TEST_F(ConversationTest, AFileMayEndWithItsLastWord) {
+  EXPECT_EQ(hear(Voice("slt").say("Flakey, stop")), Texts{});
+  const Conversation::Outputs last = conversation->end();
+  ASSERT_EQ(last.utterances.size(), 1U);
+  EXPECT_EQ(last.utterances[0].text, "flakey stop");
+}
+
 TEST_F(ConversationTest, ItDoesNotHearItself) {
   EXPECT_EQ(hear(said_by("slt", "flakey turn left"), true), Texts{});
   EXPECT_EQ(hear(said_by("slt", "flakey turn right")), Texts{"flakey turn right"});

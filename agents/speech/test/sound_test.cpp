@@ -72,6 +72,12 @@ TEST(Sounds, WhatIsNoneIsRefusedWithTheReason) {
   EXPECT_TRUE(test::has(
       test::trouble_of<std::runtime_error>([] { read_sound("\x89PNG and more", "picture.png"); }),
       "picture.png: "));
+  std::string telephone = good;
+  telephone[24] = 0x40;  // 8000 samples a second
+  telephone[25] = 0x1f;
+  EXPECT_TRUE(test::has(
+      test::trouble_of<std::runtime_error>([&] { read_sound(telephone, "telephone.wav"); }),
+      "expected 11025 to 200000 samples a second, found 8000"));
   // A stream of unknown length, and one that was cut.
   std::string endless = good;
   for (std::size_t i = 40; i < 44; ++i)

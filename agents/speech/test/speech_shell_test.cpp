@@ -1,5 +1,10 @@
 #include "speech/shell/speech_shell.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
@@ -39,6 +44,11 @@ TEST_F(SpeechOnTheBus, AFileIsHeardOnceAndThenTheProgramEnds) {
   const auto utterances = heard.take();
   ASSERT_EQ(utterances.size(), 1U);
   EXPECT_EQ(utterances[0].data.text, "flakey turn left");
+}
+
+TEST_F(SpeechOnTheBus, AFileWithoutSoundEndsTheProgram) {
+  std::ofstream(folder.path("heard.wav")) << "no sound";
+  EXPECT_THROW(SpeechShell(service, options()), UnusableFile);
 }
 
 TEST_F(SpeechOnTheBus, WhatIsSpokenBecomesAnUtteranceAndTheAnswerIsSpoken) {
@@ -87,6 +97,29 @@ TEST_F(SpeechOnTheBus, WithoutASoundCardItSaysSoAndGoesOn) {
   })) << reason;
   stop.request();
   thread.join();
+}
+
+/// A loudspeaker that ALSA waits for, since nobody reads from its pipe.
+TEST(SoundDevices, OneThatHangsIsNotSpeaking) {
+  test::TempDir folder;
+  const std::string pipe = folder.path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string file = folder.path("asound.conf");
+  std::ofstream(file) << "</usr/share/alsa/alsa.conf>\n"
+                         "pcm.hanging { type file slave.pcm null format raw file \"" +
+                             pipe + "\" }\n";
+  setenv("ALSA_CONFIG_PATH", file.c_str(), 1);
+  {
+    Speaker speaker("hanging", [](const std::string&) {});
+    speaker.play(silence(0.1));
+    EXPECT_TRUE(speaker.speaking());
+    EXPECT_TRUE(test::wait_until([&] { return speaker.hangs(); }));
+    EXPECT_FALSE(speaker.speaking());
+    const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    EXPECT_TRUE(test::wait_until([&] { return !speaker.hangs(); })) << "it goes on";
+    close(reader);
+  }
+  unsetenv("ALSA_CONFIG_PATH");
 }
 
 TEST_F(SpeechOnTheBus, OnlyADeviceCanBeMissing) {

@@ -114,7 +114,8 @@ constexpr std::array kNoises{Noise::none, Noise::white, Noise::babble};
 constexpr std::array kNames{"clean", "white", "babble"};
 
 /// Several people who talk at once about something else.
-Sound babble_of(const std::vector<std::string>& voices) {
+Sound babble_of_people() {
+  const std::vector<std::string>& voices = Voice::flite_voices();
   constexpr const char* kTalk =
       "The meeting on the budget of the laboratory was moved to the afternoon, since nobody had "
       "read the paper by then. She told them about her holidays at the lake and the weather, which "
@@ -170,7 +171,7 @@ class Bench {
       : options_(options),
         grammar_(read_file(config_folder() + "/grammars/flakey.grammar"), "flakey.grammar"),
         phrases_(phrases(options.utterances, grammar_.graph(names(grammar_), false))),
-        babble_(babble_of(options.seen)) {}
+        babble_(babble_of_people()) {}
 
   Tally run(const std::string& name, Noise noise) {
     const std::string file = config_folder() + "/speech/pronunciations.dict";
@@ -218,8 +219,11 @@ class Bench {
       if (phrase.meaning.empty()) {
         ++tally["near_misses"];
         tally["near_misses_taken"] += !heard.empty() && heard != kStop && certain_ ? 1 : 0;
+        tally["near_misses_asked"] += !heard.empty() && heard != kStop && !certain_ ? 1 : 0;
         continue;
       }
+      tally["named_stops"] += phrase.meaning == kStop ? 1 : 0;
+      tally["named_stops_right"] += phrase.meaning == kStop && heard == kStop ? 1 : 0;
       ++tally["commands"];
       const bool other = !heard.empty() && heard != phrase.meaning && heard != kStop;
       const bool asks = !certain_ && !heard.empty() && heard != kStop;
@@ -305,12 +309,15 @@ int run(const Options& options) {
   Tally any = clean;
   any.add(noise);
   const nlohmann::json result{
+      {"named_stops", clean.share("named_stops_right", "named_stops")},
+      {"named_stops_in_noise", noise.share("named_stops_right", "named_stops")},
       {"lone_stops", clean.share("lone_stops_right", "lone_stops")},
       {"lone_stops_in_noise", noise.share("lone_stops_right", "lone_stops")},
       {"false_stops", any.share("false_stops", "others")},
       {"accept_seen", seen.share("right", "commands")},
       {"accept_unseen", unseen.share("right", "commands")},
       {"false_accept", clean.share("keyless_taken", "keyless")},
+      {"near_misses_asked", clean.share("near_misses_asked", "near_misses")},
       {"near_misses_taken", clean.share("near_misses_taken", "near_misses")},
       {"wrong_in_white_noise", white.share("wrong", "commands")},
       {"accept_in_white_noise", white.share("right", "commands")},

@@ -33,7 +33,7 @@ class Conversation {
 
  private:
   void listen();
-  std::string lone_stop(const Recognized& heard) const;
+  std::string missed_stop(const Recognized& heard) const;
   Outputs take(const std::vector<Event>& events);
 
   Recognizer& recognizer_;

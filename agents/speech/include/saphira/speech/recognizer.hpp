@@ -25,7 +25,8 @@ struct Recognized {
   Outcome outcome = Outcome::not_for_it;
   std::string text;  ///< in the grammar's form: "flakey turn left"; for `addressed` the keyword
   double confidence = 0.0;  ///< [0..1] kCertain: a second hearing has the same text
-  /// Of a short utterance without the keyword: orders such as "stop" that its sound contains,
+  /// Of a short utterance that is no certain command: orders such as "stop" that its sound
+  /// contains,
   std::vector<std::string> spotted{};
   /// and then its words, heard without the grammar.
   std::vector<std::string> freely{};
