@@ -37,6 +37,7 @@ struct Options {
   std::string write_to;
   bool only_carried = false;
   bool only_drives = false;
+  bool only_building = false;
   bool shipped = false;
   bool json = false;
 };
@@ -266,9 +267,12 @@ nlohmann::json build(const Options& options, const Site& site, Tally& result) {
   test::Building building(drive_of(options, site));
   building.run(static_cast<std::uint64_t>(options.building * 600.0));
   const maps::Map map = building.aligned_map();
+  std::vector<std::string> missing;  // corridors of which less than half is on the map
   for (const maps::Feature& corridor : site.map->features) {
     if (corridor.type != lps::PointType::corridor)
       continue;
+    const long steps = result("steps");
+    const long covered = result("covered");
     for (double x = kStep / 2 - corridor.length / 2; x < corridor.length / 2; x += kStep) {
       const Vec2 at = transform(corridor.pose_in_map, {x, 0.0});
       ++result["steps"];
@@ -278,7 +282,10 @@ nlohmann::json build(const Options& options, const Site& site, Tally& result) {
           }))
         ++result["covered"];
     }
+    if (2 * (result("covered") - covered) < result("steps") - steps)
+      missing.push_back(corridor.name);
   }
+  result["untrue_ends"] = building.done() && !missing.empty();
   const test::MapScore score = test::score(map, site.noticeable);
   const test::MapScore recessed = test::score(map, site.recessed_doors);
   result["to_build"] = score.doors;
@@ -291,6 +298,7 @@ nlohmann::json build(const Options& options, const Site& site, Tally& result) {
   building.draw("floor-" + std::to_string(site.seed));
   return {{"built", building.done()},
           {"reason", building.reason()},
+          {"missing", missing},
           {"corridors_m", kStep * static_cast<double>(result("steps"))},
           {"minutes", static_cast<double>(building.whole.cycle()) / 600.0},
           {"contacts", building.whole.drive().contacts()}};
@@ -335,9 +343,9 @@ int run(const Options& options) {
       continue;
     }
     Tally one;
-    if (!options.only_drives)
+    if (!options.only_drives && !options.only_building)
       carry(options, here, one);
-    if (!options.only_carried)
+    if (!options.only_carried && !options.only_building)
       patrol(options, here, one);
     nlohmann::json told = nlohmann::json::object();
     if (!options.only_carried && !options.only_drives)
@@ -365,6 +373,7 @@ int run(const Options& options) {
        {"false_doors",
         options.floors > 0 ? static_cast<double>(all("doors_false")) / options.floors : 1.0},
        {"built_well", all("well")},
+       {"untrue_ends", all("untrue_ends")},
        {"carried_goals", all("carried")},
        {"carried_arrived", all("arrived")},
        {"lost_after_m_p50", all.quantile("lost_way", 0.5)},
@@ -393,6 +402,8 @@ int main(int argc, char** argv) {
                "only the goals after the robot was carried; the other figures are void");
   app.add_flag("--only-drives", options.only_drives,
                "only the patrols; the other figures are void");
+  app.add_flag("--only-building", options.only_building,
+               "only the building of maps; the other figures are void");
   app.add_flag("--shipped", options.shipped, "also small-office, and office-floor with four seeds");
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
   if (const auto code = app.parse(argc, argv))
