@@ -60,7 +60,8 @@ void Conversation::listen() {
 }
 
 /// A stop that the grammar of the recognizer has missed: its word; empty: it is none. By itself it
-/// needs no keyword. The words around it are often misheard, and may not turn its meaning.
+/// needs no keyword. The words around it are often misheard, and may not turn its meaning. Behind
+/// the keyword it is one where the grammar has heard the keyword alone.
 std::string Conversation::missed_stop(const Recognized& heard) const {
   if (heard.spotted.empty() || grammar_.keywords().empty())
     return {};
@@ -68,10 +69,10 @@ std::string Conversation::missed_stop(const Recognized& heard) const {
   const std::string text = joined(words, " ");
   const bool behind_keyword =
       grammar_.urgent(grammar_.keywords().front() + " " + text).meaning.has_value();
-  if (std::ranges::any_of(grammar_.keywords(), [&](const std::string& keyword) {
-        return heard.text == keyword || heard.text.starts_with(keyword + " ");
-      }))
-    return behind_keyword || !is_turned(words, {}) ? heard.spotted.front() : std::string();
+  if (std::ranges::find(grammar_.keywords(), heard.text) != grammar_.keywords().end())
+    return behind_keyword || (words.size() <= kMostAround && !is_turned(words, {}))
+               ? heard.spotted.front()
+               : std::string();
   const auto word = std::ranges::find_first_of(words, heard.spotted);
   if (word == words.end())  // "y'all to" is "halt"
     return heard.spotted.front() != "stop" && words.size() < kMostAround ? heard.spotted.front()
