@@ -228,7 +228,7 @@ TEST(Navigation, IsAsWritten) {
 class Exploring : public testing::Test, protected Site {};
 
 TEST_F(Exploring, NobodyIsAskedToOpenAWayThatIsOpen) {
-  const auto reason_after = [&](const std::string& ending) {
+  const auto reason_after = [&](const std::string& ending, double confidence = 1.0) {
     Stage stage(read_file(std::getenv("SAPHIRA_SOURCE_DIR") +
                           std::string("/config/activities/navigation.act")) +
                     "(defintention :plan-and-execute :params (dest)"
@@ -236,6 +236,7 @@ TEST_F(Exploring, NobodyIsAskedToOpenAWayThatIsOpen) {
                     ending + "))",
                 functions);
     stage.inputs.around = around;
+    stage.inputs.around.registration.confidence = confidence;
     stage.inputs.robot = robot;
     stage.inputs.robot.odom = 1;
     stage.ask(1, "go_to_place", {text("place", "north")});
@@ -248,6 +249,7 @@ TEST_F(Exploring, NobodyIsAskedToOpenAWayThatIsOpen) {
             "it has not come to north, though it knows a way: a behavior is missing");
   EXPECT_EQ(reason_after("(SUCCEED \"at the end of the path\")"),
             "it has not come to north, though it knows a way: its path ended elsewhere");
+  EXPECT_TRUE(reason_after("(FAIL \"x\")", 0.8).ends_with("does not confirm that"));
 }
 
 TEST_F(Exploring, ExploringGoesToTheNearestEndFirstAndComesToAnEnd) {
