@@ -105,6 +105,7 @@ class Registration::Self {
   bool uses_old_readings(const Percept& percept) const;
   double turned_since(const Percept& percept) const;
   void find_environment();
+  bool in_a_corridor() const;
   double explained_by_furniture() const;
   void report();
 
@@ -661,8 +662,9 @@ void Registration::Self::report() {
         std::min(between(now_.search.own_score, settings_.lost, settings_.sure),
                  between(search_.contradiction() - explained_by_furniture(), settings_.refuted,
                          settings_.doubts));
-    now_.output.confidence =
-        std::min(now_.output.confidence, std::clamp(search_.near_share(), 0.0, 1.0));
+    if (in_a_corridor())
+      now_.output.confidence =
+          std::min(now_.output.confidence, std::clamp(search_.near_share(), 0.0, 1.0));
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
     now_.output.reason =
@@ -676,6 +678,13 @@ void Registration::Self::report() {
         : now_.filter->sigma_position() > 0.5 ? "nothing matched for long: by dead reckoning"
                                               : "matched with the map";
   }
+}
+
+/// Rooms hold furniture that no map has: there the last metres alone say little.
+bool Registration::Self::in_a_corridor() const {
+  const auto& region = now_.output.environment;
+  return region && (map_.features[*region].type == PointType::corridor ||
+                    map_.features[*region].type == PointType::junction);
 }
 
 /// Maps leave furniture out: in a room, a share of the evidence of its walls says nothing.

@@ -33,8 +33,8 @@ struct SearchSettings {
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
   /// [m] The same for the part of a score that is near. A robot that was carried has the good
   /// score of its old place for some metres yet.
-  double near_memory = 1.5;
-  double near_enough = 8.0;  ///< a part that is enough, whatever the whole score is
+  double near_memory = 0.8;
+  double near_enough = 5.5;  ///< a part that is enough, whatever the whole score is
   double agrees = 0.2;           ///< the limit of one reading's evidence for the present place...
   double alike = 0.1;    ///< ...and its share against silent walls: others are alike elsewhere
   double strange = 3.0;  ///< the limit of the evidence of echoes that a person or box explains
