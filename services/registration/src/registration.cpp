@@ -105,6 +105,7 @@ class Registration::Self {
   bool uses_old_readings(const Percept& percept) const;
   double turned_since(const Percept& percept) const;
   void find_environment();
+  bool in_a_corridor() const;
   double explained_by_furniture() const;
   void report();
 
@@ -131,7 +132,7 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
                                double drift_variance, double confidence) {
   now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
-  now_.search.own_score = settings_.lost + confidence * (settings_.sure - settings_.lost);
+  search_.set_own_score(settings_.lost + confidence * (settings_.sure - settings_.lost));
   now_.state = v1::REGISTRATION_TRACKING;
   now_.confirmed = confidence > kUnconfirmed;
   now_.doubted = now_.carried = now_.other_map = false;
@@ -481,7 +482,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
         v1::REGISTRATION_LOST;  // reported, so that users of the pose learn that it did not hold
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
-  now_.search.own_score = score;
+  search_.set_own_score(score);
   // The evidence of openings stays: walls are alike in other corridors.
   now_.search.against = now_.search.strange = 0.0;
   now_.done.clear();
@@ -661,6 +662,9 @@ void Registration::Self::report() {
         std::min(between(now_.search.own_score, settings_.lost, settings_.sure),
                  between(search_.contradiction() - explained_by_furniture(), settings_.refuted,
                          settings_.doubts));
+    if (in_a_corridor())
+      now_.output.confidence =
+          std::min(now_.output.confidence, std::clamp(search_.near_share(), 0.0, 1.0));
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
     now_.output.reason =
@@ -674,6 +678,13 @@ void Registration::Self::report() {
         : now_.filter->sigma_position() > 0.5 ? "nothing matched for long: by dead reckoning"
                                               : "matched with the map";
   }
+}
+
+/// Rooms hold furniture that no map has: there the last metres alone say little.
+bool Registration::Self::in_a_corridor() const {
+  const auto& region = now_.output.environment;
+  return region && (map_.features[*region].type == PointType::corridor ||
+                    map_.features[*region].type == PointType::junction);
 }
 
 /// Maps leave furniture out: in a room, a share of the evidence of its walls says nothing.

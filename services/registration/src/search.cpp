@@ -82,6 +82,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     h.score *= fading;
   }
   now_.own_score *= fading;
+  now_.near_score *= std::exp(-way / settings_.near_memory);
   now_.openings *= std::exp(-way / settings_.openings_memory);
   // Readings of a robot that stands repeat one event.
   if (now_.travelled >= settings_.spacing) {
@@ -89,8 +90,11 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     for (const PlacedReading& reading : readings) {
       for (Hypothesis& h : now_.hypotheses)
         h.score += weigh(h.filter.pose(), reading);
-      if (now_.own)
-        now_.own_score += weigh(*now_.own, reading);
+      if (now_.own) {
+        const double worth = weigh(*now_.own, reading);
+        now_.own_score += worth;
+        now_.near_score += worth;
+      }
       now_.history.push_back(reading);
     }
     while (now_.history.size() > settings_.history)
@@ -110,6 +114,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
       const double score = worth(*percept, result, own->pose());
       now_.own_score += score;
+      now_.near_score += score;
       if (opening && score > 0.0) {
         ++now_.own_openings;
         support_own(score, 1.0);
@@ -224,6 +229,16 @@ bool Search::is_own(const Pose& pose_in_map) const {
 bool Search::own_is_best() const {
   const auto other = best(true);
   return !other || other->hypothesis->score < now_.own_score;
+}
+
+double Search::near_share() const {
+  const double usual = now_.own_score * settings_.near_memory / settings_.memory;
+  return usual <= 0.0 ? 1.0 : now_.near_score / std::min(usual, settings_.near_enough);
+}
+
+void Search::set_own_score(double score) {
+  now_.own_score = score;
+  now_.near_score = score * settings_.near_memory / settings_.memory;
 }
 
 bool Search::leads(const Pose& pose, double score) const {

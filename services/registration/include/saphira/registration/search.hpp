@@ -31,6 +31,10 @@ struct SearchSettings {
   std::size_t history = 60;      ///< readings that test a new hypothesis
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
+  /// [m] The same for the part of a score that is near. A robot that was carried has the good
+  /// score of its old place for some metres yet.
+  double near_memory = 0.8;
+  double near_enough = 5.5;  ///< a part that is enough, whatever the whole score is
   double agrees = 0.2;           ///< the limit of one reading's evidence for the present place...
   double alike = 0.1;    ///< ...and its share against silent walls: others are alike elsewhere
   double strange = 3.0;  ///< the limit of the evidence of echoes that a person or box explains
@@ -65,6 +69,7 @@ struct SearchState {
   double travelled = 0.0;
   std::optional<Pose> own;
   double own_score = 0.0;  ///< of the present place
+  double near_score = 0.0;  ///< the part of it that the last metres have given
   int own_openings = 0;    ///< seen openings that the present place has
   // Evidence against the present place, never below 0 (Page's test, 1954), so that the good
   // readings of a place before do not count.
@@ -109,6 +114,11 @@ class Search {
   void suspect(const PoseFilter& filter);
   /// True where no other place has a higher score than the present one.
   bool own_is_best() const;
+  /// The near part of the present place's score, by what is usual for that score or enough: below 1
+  /// the last metres fit worse than those before.
+  double near_share() const;
+  /// The present place has this score, near and far.
+  void set_own_score(double score);
   /// Tests of the present place, and of the given one: its score is high enough, it leads the other
   /// by the margin, and no place in the map leads it by that.
   bool own_leads() const;
