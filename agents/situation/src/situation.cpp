@@ -155,7 +155,7 @@ Condition present_condition(const Situation& s, const Program& program, bool cou
   } else if (const v1::Stamp& newest = status.stamp; newest.cycle > 0 &&
                                                      s.robot_epoch() == newest.epoch &&
                                                      s.now >= newest.cycle + kNoSteps) {
-    const double silence = static_cast<double>(s.now - newest.cycle) / s.pace;
+    const double silence = s.pace > 0.0 ? static_cast<double>(s.now - newest.cycle) / s.pace : 0.0;
     if (silence >= kNoStep)
       return {Health::hung, "has taken no step for " + seconds_text(silence) +
                                 " (it hangs, or waits for its inputs)"};

@@ -45,7 +45,7 @@ struct Situation {
   double silence = 0.0;
   double listened = 0.0;  ///< [s] time of listening
   /// [1/s] the robot's cycles in a second of the clock that has statuses published: a simulation
-  /// has more or fewer than a robot.
+  /// has more or fewer than a robot [0: not known yet].
   double pace = 1.0 / kCycle;
 
   std::optional<v1::RobotState> robot;       ///< of N: the behaviors' input

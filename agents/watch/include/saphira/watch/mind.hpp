@@ -81,15 +81,15 @@ class Pace {
     if (now - began_ >= kShortest && stamp.cycle > first_.cycle)
       pace_ = static_cast<double>(stamp.cycle - first_.cycle) / (now - began_);
   }
-  /// [1/s], that of a robot until it is known.
+  /// [1/s] [0: not known yet]
   double get() const { return pace_; }
 
  private:
-  static constexpr double kShortest = 0.5;  // [s] for a measurement
+  static constexpr double kShortest = 0.2;  // [s] for a measurement
   static constexpr double kRenewed = 10.0;  // [s] the rate of a simulation may change
   v1::Stamp first_;
   double began_ = 0.0;
-  double pace_ = 1.0 / kCycle;
+  double pace_ = 0.0;
 };
 
 /// The robot's goals, intentions, behaviors and beliefs from the bus: of now and of past cycles.
@@ -108,6 +108,8 @@ class Mind {
   void listen(std::chrono::milliseconds time, const bus::Stop& stop);
 
   const v1::RobotState* robot() const { return robots_.newest(); }
+  /// It is known how many cycles the robot has in a second.
+  bool knows_pace() const { return pace_.get() > 0.0; }
   /// [s] since that came.
   double silence() const { return seconds_since(robot_came_); }
   const v1::Intentions* intentions() const { return intentions_.newest(); }
