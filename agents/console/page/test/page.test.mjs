@@ -106,10 +106,12 @@ test('old news are told with their age', async () => {
 test('without a connection nothing is said of goals and programs', async () => {
   const page = await person();
   await open(page);
-  await page.getByText('No goal is underway.').waitFor();
+  await page.getByRole('tab', {name: 'Intentions'}).click();
+  const idle = page.getByText('The robot intends nothing');
+  await idle.waitFor();
   await page.evaluate(() => Object.defineProperty(saphira, 'connected', {get: () => false, set() {}}));
   await page.getByText('Not known: there is no connection to the console.').waitFor();
-  assert.equal(await page.getByText('No goal is underway.').count(), 0);
+  assert.equal(await idle.count(), 0);
   await leave(page);
 });
 
