@@ -260,8 +260,7 @@ void Executor::take_in(const GoalEvent& event) {
              : "withdrawn by " + (event.by.empty() ? "its requester" : event.by)) +
             (event.why.empty() ? "" : ": " + event.why));
   } else if (entry.goal.writer_lost == v1::WRITER_LOST_CANCEL) {
-    end(entry, v1::GOAL_CANCELED, v1::CODE_WRITER_LOST,
-        "the program that asked for it is gone or cut off: not heard for 1 s");
+    end(entry, v1::GOAL_CANCELED, v1::CODE_WRITER_LOST, "the program that asked for it is gone");
   }
 }
 
