@@ -49,11 +49,12 @@ TEST(CAgent, OfAnotherVendorLooksSendsTakesBackDrivesAnswersAndAsks) {
                                                           {"SAPHIRA_DOMAIN", test::domain()}};
   test::Process up({installed.program("saphira"), "up", "demo"}, installed.path("up.log"),
                    environment);
-  const auto run = [&](const std::vector<std::string>& words, const std::string& said) {
+  const auto run = [&](const std::vector<std::string>& words, const std::string& said,
+                       int code = 0) {
     std::vector<std::string> command{build + "/c_agent"};
     command.insert(command.end(), words.begin(), words.end());
     test::Process agent(command, installed.path(words[0] + ".log"), environment);
-    EXPECT_EQ(agent.wait(std::chrono::minutes(2)), std::optional<int>(0))
+    EXPECT_EQ(agent.wait(std::chrono::minutes(2)), std::optional<int>(code))
         << words[0] << ": " << agent.output() << up.output();
     EXPECT_NE(agent.output().find(said), std::string::npos) << agent.output();
   };
@@ -65,6 +66,15 @@ TEST(CAgent, OfAnotherVendorLooksSendsTakesBackDrivesAnswersAndAsks) {
   run({"go", "0.6", "0"}, "succeeded");
   run({"cancel", "8", "0", "3"}, "canceled");
   run({"drive", "0.1", "0.3", "2"}, "c_agent drives");
+  const auto estop = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> command{installed.program("saphira"), "estop"};
+    command.insert(command.end(), words.begin(), words.end());
+    test::Process stop(command, installed.path("estop.log"), environment);
+    EXPECT_EQ(stop.wait(), std::optional<int>(0)) << stop.output();
+  };
+  estop({});
+  run({"drive", "0", "0.3", "3"}, "it may not drive: an emergency stop is latched, pressed by", 1);
+  estop({"reset"});
   run({"go", "0.6", "0"}, "succeeded");
   {
     const test::Process facilitator({installed.program("saphira-facilitator")},

@@ -327,7 +327,7 @@ int beliefs(const BeliefOptions& belief_options, const bus::NodeOptions& options
             const bus::Stop& stop) {
   const auto& words = belief_options.words;
   if (!words.empty() && words[0] == "set") {
-    if (words.size() != 3)
+    if (words.size() != 3 || words[1].empty())
       throw std::invalid_argument(
           "expected beliefs set NAME VALUE, such as beliefs set door-open t");
     check_value(words[2]);

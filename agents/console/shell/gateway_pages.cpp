@@ -160,7 +160,7 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
     return true;
   page.visitor = visitor_of(access_, keys_.keys(), hello.key, unix_seconds());
   page.greeted = page.visitor.may(DoorRight::watch) || may_watch(access_, page.caller);
-  page.name = page.visitor.person ? page.visitor.person->name : hello.name;
+  page.name = name_of(page.visitor, hello.name);
   if (!hello.key.empty() && !page.visitor.may(DoorRight::watch))
     audit_.wrong_key("the console", now(), keys_.keys().ended(hello.key, unix_seconds()));
   if (page.greeted && page.channel == Channel::telemetry)
@@ -262,7 +262,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   if (const auto* sample = std::get_if<teleop::Control::Sample>(&message))
     take_sample(connection, page, *sample);
   else if (const auto* rename = std::get_if<Rename>(&message))
-    name(connection, page, page.visitor.person ? page.name : rename->name);
+    name(connection, page, name_of(page.visitor, rename->name));
   else if (const auto* take = std::get_if<TakeControl>(&message))
     note(control_.take(connection, take->force, now()));
   else if (std::holds_alternative<AskForControl>(message))

@@ -118,6 +118,17 @@ Visitor visitor_of(const AccessSettings& settings, const security::DoorKeys& key
   return person == nullptr ? Visitor{} : Visitor{person->right, *person};
 }
 
+std::string name_of(const Visitor& visitor, const std::string& claimed) {
+  if (visitor.person)
+    return visitor.person->name;
+  std::string name = claimed;
+  std::erase_if(name,
+                [](char c) { return std::string_view("()[],;").find(c) != std::string::npos; });
+  if (visitor.may(security::DoorRight::watch))
+    return name;
+  return "a visitor without a key" + (name.empty() ? "" : " (" + name + ")");
+}
+
 bool may_watch(const AccessSettings& settings, const Caller& caller) {
   const Authority host = authority_of(caller.host);
   const bool is_here = host.name == "localhost" || host.name == "[::1]" ||

@@ -77,6 +77,21 @@ TEST(Access, OnlyTheWholeKeyIsRight) {
   EXPECT_FALSE(visitor_of({}, {}, "", kNow).may(DoorRight::watch));
 }
 
+TEST(Access, AVisitorWithoutAKeyIsToldApartFromThePersonWhoseNameItTakes) {
+  security::DoorKeys keys;
+  const Visitor wanda =
+      visitor_of(kSettings, keys, keys.add("wanda", DoorRight::watch, 30, kNow), kNow);
+  const Visitor operates = visitor_of(kSettings, keys, kSettings.key, kNow);
+  const Visitor keyless = visitor_of(kSettings, keys, "", kNow);
+  EXPECT_EQ(name_of(wanda, "karen"), "wanda");
+  EXPECT_EQ(name_of(operates, "wanda"), "wanda");
+  EXPECT_EQ(name_of(operates, "karen (operator), karen"), "karen operator karen");
+  EXPECT_EQ(name_of(operates, ""), "");
+  EXPECT_EQ(name_of(keyless, "wanda"), "a visitor without a key (wanda)");
+  EXPECT_EQ(name_of(keyless, "x) karen (operator)"), "a visitor without a key (x karen operator)");
+  EXPECT_EQ(name_of(keyless, "()"), "a visitor without a key");
+}
+
 TEST(Access, APersonsKeyHasItsRightsWhileItHolds) {
   security::DoorKeys keys;
   const std::string anna = keys.add("anna", DoorRight::drive, 30, kNow);

@@ -4,7 +4,7 @@
  *   c_agent state              the robot's state for a second
  *   c_agent go X Y             to the point [m in odom]; exit code 0 when it is there
  *   c_agent cancel X Y SECONDS the same, and takes the goal back after so long
- *   c_agent drive SPEED TURN SECONDS   [m/s], [rad/s]
+ *   c_agent drive SPEED TURN SECONDS   [m/s], [rad/s]; exit code 1 where it is stopped
  *   c_agent know PERSON PLACE  tells whoever asks where that person is, until Ctrl-C
  *   c_agent ask PERSON         asks all agents that can tell; exit code 0 when one knows
  *
@@ -209,8 +209,16 @@ static int go(double x, double y, double take_back) {
   }
 }
 
+/* A secured bus puts the checked name of the program before its own. */
+static bool is_own(const char* source) {
+  const size_t length = strlen(source);
+  return strcmp(source, "c_agent") == 0 ||
+         (length > 9 && strcmp(source + length - 9, ", c_agent") == 0);
+}
+
 /* Teleoperation: ten commands a second or more, for as long as a person wants to drive. The bridge
- * stops the robot 0.3 s after the last one, whatever becomes of this program; its guard holds. */
+ * stops the robot 0.3 s after the last one, whatever becomes of this program; its guard holds. A
+ * driver who was stopped, or does not get the robot within a second, gives up: exit code 1. */
 static int drive(double speed, double turn, double seconds) {
   const dds_entity_t commands = writer_of(&saphira_v1_MotorCommand_desc, "drive/teleop", MOTION);
   const dds_entity_t robots = reader_of(&saphira_v1_RobotState_desc, "robot/state", CYCLIC);
@@ -223,6 +231,9 @@ static int drive(double speed, double turn, double seconds) {
                                      .rotation_velocity = turn};
   bool seen = false;
   bool drives = false;
+  bool drove = false;
+  bool fails = false;
+  char why[256] = "the bridge says nothing";
   int released = 0;
   dds_time_t began = dds_time();
   while (released < 4) {
@@ -236,19 +247,29 @@ static int drive(double speed, double turn, double seconds) {
     }
     while (take(grants, &sample)) {
       const saphira_v1_Grant* grant = sample;
-      const bool now = strcmp(grant->source, "c_agent") == 0;
-      if (now != drives)
-        printf("%s: %s\n", now ? "c_agent drives" : "c_agent does not drive", grant->reason);
+      drives = is_own(grant->source);
+      if (drives && !drove) printf("c_agent drives: %s\n", grant->reason);
       fflush(stdout);
-      drives = now;
+      drove = drove || drives;
+      snprintf(why, sizeof why, "%s", grant->reason);
+      for (uint32_t i = 0; i < grant->refused._length; ++i)
+        if (is_own(grant->refused._buffer[i].source))
+          snprintf(why, sizeof why, "%s", grant->refused._buffer[i].reason);
+      if (grant->estopped)
+        snprintf(why, sizeof why, "an emergency stop is latched, pressed by %s: saphira estop reset",
+                 grant->estop_source);
     }
     const double passed = (double)(dds_time() - began) * 1e-9;
     if (!seen && passed > 10.0) {
       fprintf(stderr, "c_agent: nothing is heard of robot %s\n", robot_name());
       return 1;
     }
+    if (seen && released == 0 && !drives && (drove || passed > 1.0)) {
+      fprintf(stderr, "c_agent: %s: %s\n", drove ? "it drives no more" : "it may not drive", why);
+      fails = true;
+    }
     if (seen) {
-      if (stopped || passed > seconds) {
+      if (stopped || fails || passed > seconds) {
         /* Releases several times: the topic is best effort. Autonomy may drive again. */
         command.active = false;
         command.hand_back = true;
@@ -259,7 +280,8 @@ static int drive(double speed, double turn, double seconds) {
     }
     rest(DDS_MSECS(50));
   }
-  return 0;
+  if (!fails && !drove) fprintf(stderr, "c_agent: it did not drive: %s\n", why);
+  return drove && !fails ? 0 : 1;
 }
 
 /* The text of an argument; "" where it has none of that name. */

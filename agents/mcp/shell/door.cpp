@@ -476,7 +476,7 @@ void Door::take_back_words() {
 }
 
 void Door::withdraw(Own& own, const std::string& why) {
-  if (std::exchange(own.withdrawn, true))
+  if (has_ended(own.id) || std::exchange(own.withdrawn, true))
     return;
   if (action(own.id) == nullptr)
     goals_.cancel(own.id, why);
@@ -638,7 +638,8 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
 /// Presses until the bridge has latched the stop, and then releases. The topic is best effort.
 void Door::press() {
   const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped;
-  v1::MotorCommand command{.source = who_};
+  // A command has no person beside its source.
+  v1::MotorCommand command{.source = person_.name.empty() ? who_ : person_.name + " at " + who_};
   for (int i = 0; i < 4; ++i) {
     command.number = bus::next_request_number();
     command.active = !latched;

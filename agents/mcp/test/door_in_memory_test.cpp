@@ -189,6 +189,30 @@ TEST_F(DoorInMemory, TheListOfToolsWaitsForTheMapWithTheirPlaces) {
   EXPECT_FALSE(properties["whose"].contains("description")) << "a name says no more twice";
 }
 
+TEST_F(DoorInMemory, AnEmergencyStopNamesThePersonOfTheKey) {
+  door = std::make_unique<Door>(node, robot, session, "model",
+                                security::DoorKey{"dora", security::DoorRight::watch, 0, ""});
+  call(1, "emergency_stop", {});
+  const auto pressed = presses.take();
+  ASSERT_FALSE(pressed.empty());
+  EXPECT_EQ(pressed.front().data.source, "dora at model");
+}
+
+TEST_F(DoorInMemory, AGoalThatHasEndedIsNotWithdrawnWithItsClient) {
+  schemas.write({.schemas = {{.name = "patrol"}}});
+  turn();
+  call(1, "patrol", {{"wait_s", 0}});
+  const v1::GoalId ended = saphira::test::only(goals.take()).data.id;
+  call(2, "patrol", {{"wait_s", 0}});
+  const v1::GoalId open = saphira::test::only(goals.take()).data.id;
+  statuses.write({.id = ended, .functor = "patrol", .state = v1::GOAL_CANCELED});
+  turn();
+  door->close("its client is gone");
+  const v1::Goal told = saphira::test::only(goals.take()).data;
+  EXPECT_EQ(told.id, open);
+  EXPECT_EQ(told.withdrawn, "its client is gone");
+}
+
 TEST_F(DoorInMemory, AGoalThatTheClientMayNotApproveWaitsForSomebodyWhoMay) {
   door = std::make_unique<Door>(node, robot, session, "model",
                                 security::DoorKey{"anna", security::DoorRight::drive, 0, ""});

@@ -271,7 +271,7 @@ class Robot(Context):
 
         Options as of do().
         """
-        if len(place) == 1 and isinstance(place[0], str):
+        if len(place) == 1 and isinstance(place[0], str) and place[0]:
             return self.do("go-to-place", place=place[0], **options)
         if len(place) == 1 and isinstance(place[0], Point):
             return self.do("go_to", position=place[0], **options)

@@ -70,6 +70,8 @@ def test_a_refusal_has_code_reason_and_remedy(robot: saphira.Robot) -> None:
     with pytest.raises(saphira.Trouble) as other:
         robot.go("nowhere").wait()
     assert "nowhere" in other.value.reason
+    with pytest.raises(TypeError, match="expected go"):
+        robot.go("")
 
 
 def test_asks_agents(robot: saphira.Robot) -> None:

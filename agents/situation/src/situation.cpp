@@ -21,7 +21,8 @@ constexpr std::uint64_t kLateCycles = 3;   // behind: worth mentioning
 constexpr std::uint64_t kHungCycles = 10;  // behind: no more samples come
 constexpr double kListened = 1.0;          // [s] of listening after which silence counts
 constexpr double kFresh = 5.0;             // [s] after its start
-constexpr std::uint64_t kNoStep = 30;      // [cycles] the status is published once a second
+constexpr double kNoStep = 3.0;            // [s] the status is published once a second
+constexpr std::uint64_t kNoSteps = 30;     // [cycles] in single step a robot may stand for any time
 constexpr std::uint64_t kLongRun = 100;    // [cycles] of the robot: a fresh program is late
 
 /// The newest instance that is heard, rather not the copy of a second deployment, which only waits;
@@ -153,10 +154,11 @@ Condition present_condition(const Situation& s, const Program& program, bool cou
       return {Health::late, "is " + seconds_text(seconds_of(behind)) + " behind"};
   } else if (const v1::Stamp& newest = status.stamp; newest.cycle > 0 &&
                                                      s.robot_epoch() == newest.epoch &&
-                                                     s.now >= newest.cycle + kNoStep) {
-    return {Health::hung, "has taken no step for " +
-                              seconds_text(seconds_of(s.now - newest.cycle)) +
-                              " (it hangs, or waits for its inputs)"};
+                                                     s.now >= newest.cycle + kNoSteps) {
+    const double silence = s.pace > 0.0 ? static_cast<double>(s.now - newest.cycle) / s.pace : 0.0;
+    if (silence >= kNoStep)
+      return {Health::hung, "has taken no step for " + seconds_text(silence) +
+                                " (it hangs, or waits for its inputs)"};
   }
   if (status.uptime < kFresh && status.stamp.cycle > kLongRun)
     return {Health::fresh, "was started " + seconds_text(status.uptime) + " ago"};

@@ -70,6 +70,7 @@ Situation situation_of(const Json& json) {
   member("past", s.past);
   member("silence", s.silence);
   member("listened", s.listened);
+  member("pace", s.pace);
   member("robot", s.robot);
   member("grant", s.grant);
   member("behaviors", s.behaviors);

@@ -7,6 +7,7 @@
 
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/security/subject.hpp"
 #include "saphira/situation/words.hpp"
 #include "saphira/watch/processes.hpp"
 
@@ -19,6 +20,8 @@ constexpr std::int64_t kExpiresSoon = 30;  // [days] a certificate that expires
 constexpr double kExchanged = 3.0;         // [s] by then the endpoints of a program are known
 constexpr double kHandshake = 5.0;         // [s] by then a member is let in
 constexpr std::size_t kMostTopics = 6;     // that are named
+constexpr std::size_t kMostPrograms = 3;   // likewise
+constexpr const char* kNoProof = "of another authority, expired, revoked, or a wrong clock";
 // idl/bus/README.md, Network.
 constexpr std::uint32_t kFirstPort = 7400;
 constexpr std::uint32_t kLoopbackPorts = 125;
@@ -133,7 +136,7 @@ Finding of_program(const BusFacts& facts, const bus::ProgramEntry& program) {
     return wrong(
         "not-let-in",
         is + "; it has not proved that it is a member of the site " + facts.credentials.site,
-        "saphira security check there: another site, expired, revoked, or a wrong clock");
+        std::string("saphira security check on both sides: credentials ") + kNoProof);
   if (!program.contract.empty() && program.contract != facts.contract)
     return wrong("contract", is + "; this side has the contract " + facts.contract,
                  "install one version on both sides (saphira --version)");
@@ -306,6 +309,28 @@ std::vector<Finding> diagnose(const BusFacts& facts, const std::string& one,
           (other.empty() ? second.name != "cli" : second.name == other))
         add_pair(facts, first, second, all);
   return all;
+}
+
+std::string why_kept_out(const std::vector<bus::ProgramEntry>& found, const std::string& member) {
+  std::string site;
+  std::vector<std::string> names;
+  for (const bus::ProgramEntry& program : found)
+    if (const auto subject = security::parse_subject(program.subject);
+        subject && !program.let_in && std::ranges::find(names, program.name) == names.end()) {
+      site = subject->site;
+      names.push_back(program.name);
+    }
+  if (names.empty())
+    return {};
+  std::ranges::sort(names);
+  if (names.size() > kMostPrograms) {
+    const std::size_t more = names.size() - kMostPrograms;
+    names.resize(kMostPrograms);
+    names.push_back(std::to_string(more) + " more");
+  }
+  return listed(names) + " of the site " + site + (names.size() == 1 ? " has" : " have") +
+         " not let " + member + " in: credentials " + kNoProof +
+         ": saphira security check on both sides, saphira doctor";
 }
 
 std::vector<std::uint32_t> domains_in(std::string_view sockets) {

@@ -4,6 +4,7 @@ namespace saphira::watch {
 
 namespace {
 
+constexpr double kPaced = 1.0;     // [s] by then a robot that moves on has shown its pace
 constexpr double kRecalled = 0.7;  // [s] without older samples: the past is complete
 
 }  // namespace
@@ -18,6 +19,8 @@ bool Inquiry::poll() {
   if (asked_ == 0) {
     cycle_ = mind_.newest_cycle();
     if (waited <= kMindPatience && !(mind_.whole(cycle_) && (mind_.knows_goals() || waited > 1.0)))
+      return false;
+    if (!mind_.knows_pace() && waited < kPaced)
       return false;
     if (!mind_.held() && !misses(mind_.situation()))
       return true;

@@ -50,8 +50,10 @@ void Mind::poll() {
   }
   const std::uint64_t newest_before = robots_.known().newest;
   robots_.take(robot_reader_);
-  if (robots_.known().newest != newest_before)
+  if (robots_.known().newest != newest_before) {
     robot_came_ = Clock::now();
+    pace_.note(robots_.newest()->stamp, seconds_since(began_));
+  }
   grant_reader_.visit([&](const v1::Grant& grant, const bus::SampleInfo& info) {
     if (info.disposed)
       return;
@@ -195,6 +197,7 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.now = robots_.known().newest;
   now.silence = lockstep() ? 0.0 : silence();
   now.listened = seconds_since(began_);
+  now.pace = pace_.get();
   now.robot = copy(robots_.at(cycle));
   now.grant = copy(grant_for(cycle));
   // Without a robot, or between two steps, the bridge tells of a change without a new cycle.

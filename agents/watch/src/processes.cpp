@@ -8,6 +8,7 @@
 #include "saphira/bus/introspect.hpp"
 #include "saphira/bus/status_words.hpp"
 #include "saphira/situation/words.hpp"
+#include "saphira/watch/diagnosis.hpp"
 
 namespace saphira::watch {
 
@@ -118,8 +119,13 @@ std::string who_is_there(const Processes& processes) {
   const std::string where = "robot " + options.robot + ", domain " +
                             std::to_string(options.domain) + ", profile " +
                             name_of(options.profile);
-  if (const std::string bar = node.bar(); all.empty() && !bar.empty())
-    return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
+  if (all.empty()) {
+    std::string bar = node.bar();
+    if (const auto own = node.identity(); own && bar.empty())
+      bar = why_kept_out(bus::found_programs(node), own->name);
+    if (!bar.empty())
+      return "the bus is secured (" + where + "): " + bar + " (docs/security.md)";
+  }
   const bool listens =
       options.profile != bus::Profile::host &&
       std::chrono::duration<double>(processes.quiet()) < listening_time(node, false);

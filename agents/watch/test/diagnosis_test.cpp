@@ -73,6 +73,22 @@ TEST(Diagnosis, AHealthyBusHasNoFindings) {
   EXPECT_EQ(codes(diagnose(secured())), "");
 }
 
+TEST(Diagnosis, ProgramsOfTheSiteThatLetAMemberInAreNoBar) {
+  std::vector<bus::ProgramEntry> found = secured().programs;
+  EXPECT_EQ(why_kept_out(found, "ann"), "");
+  for (bus::ProgramEntry& each : found)
+    each.let_in = false;
+  EXPECT_EQ(why_kept_out(found, "ann"),
+            "behaviors and bridge of the site lab have not let ann in: credentials of another "
+            "authority, expired, revoked, or a wrong clock: saphira security check on both sides, "
+            "saphira doctor");
+  found.resize(1);
+  found.push_back(found[0]);
+  EXPECT_TRUE(why_kept_out(found, "ann").starts_with("bridge of the site lab has not let"));
+  found[0].subject = found[1].subject = "";
+  EXPECT_EQ(why_kept_out(found, "ann"), "") << "they are open";
+}
+
 TEST(Diagnosis, NobodyIsThere) {
   BusFacts facts = well();
   facts.programs.clear();

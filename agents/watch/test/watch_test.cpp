@@ -67,6 +67,22 @@ TEST_F(Watch, NewestKeepsOneSample) {
   EXPECT_EQ(newest.matched(), 1U);
 }
 
+TEST(Pace, IsThatOfTheNewestSeconds) {
+  Pace pace;
+  pace.note({7, 100}, 2.0);
+  pace.note({7, 103}, 2.1);
+  EXPECT_DOUBLE_EQ(pace.get(), 0.0) << "too short a time";
+  pace.note({7, 130}, 3.0);
+  EXPECT_DOUBLE_EQ(pace.get(), 30.0);
+  pace.note({7, 500}, 12.5);
+  EXPECT_DOUBLE_EQ(pace.get(), 30.0) << "measured anew";
+  pace.note({7, 505}, 13.5);
+  EXPECT_DOUBLE_EQ(pace.get(), 5.0);
+  pace.note({8, 1}, 14.0);
+  pace.note({8, 21}, 16.0);
+  EXPECT_DOUBLE_EQ(pace.get(), 10.0) << "of another bridge";
+}
+
 TEST_F(Watch, TheMindIsThatOfTheNewestWholeCycle) {
   Mind mind(node, false);
   mind.poll();

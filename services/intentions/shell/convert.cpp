@@ -158,6 +158,8 @@ v1::Belief to_bus(const Belief& belief) {
 }
 
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {
+  if (kind == ClaimEvent::Kind::kSaid && claim.name.empty())
+    throw FileError("belief", 1, 1, "expected a name");
   ClaimEvent result;
   result.kind = kind;
   result.id = claim.id;

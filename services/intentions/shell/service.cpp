@@ -23,6 +23,7 @@ constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
 constexpr double kReply = 3600.0;           // [s] for agents: an activity has a limit of its own
 constexpr std::size_t kMostGoals = 1024;    // of GoalStatusSet.goals
 constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
+constexpr std::uint64_t kSaveAgain = 10;    // steps
 
 std::vector<std::string> folders(const Options& options) {
   std::vector<std::string> paths{activities_folder()};
@@ -281,14 +282,41 @@ void Service::check_files() {
                   .trouble = folders_.trouble()});
 }
 
+/// A disk that is full is tried again with the next change, and once a second.
 void Service::remember(const GoalUpdates& updates) {
-  Notes notes;
-  if (!updates.endings.empty() && !memory_.append(updates.endings))
-    notes.warn(cannot_be("the memory file", "written") +
-               "; a restart may do a finished goal again");
-  if (updates.work && !memory_.keep(*updates.work))
-    notes.warn(cannot_be("the memory file", "written") + "; a restart may repeat finished work");
-  ports_.say(notes.lines());
+  unsaved_endings_.insert(unsaved_endings_.end(), updates.endings.begin(), updates.endings.end());
+  if (unsaved_endings_.size() > kMostEndings)
+    unsaved_endings_.erase(unsaved_endings_.begin(), unsaved_endings_.end() - kMostEndings);
+  if (updates.work)
+    unsaved_work_ = updates.work;
+  if (!updates.endings.empty() || updates.work || steps_ % kSaveAgain == 0)
+    save();
+  if (!memory_trouble_.empty())
+    ports_.degrade(memory_trouble_);
+}
+
+void Service::save() {
+  std::string trouble;
+  if (!unsaved_endings_.empty()) {
+    if (memory_.append(unsaved_endings_))
+      unsaved_endings_.clear();
+    else
+      trouble = cannot_be("the memory file", "written") +
+                "; a restart may do a finished goal again, or repeat finished work";
+  }
+  // It names the newest ending.
+  if (unsaved_work_ && unsaved_endings_.empty()) {
+    if (memory_.keep(*unsaved_work_))
+      unsaved_work_.reset();
+    else
+      trouble = cannot_be("the memory file", "written") + "; a restart may repeat finished work";
+  }
+  if (!trouble.empty() && memory_trouble_.empty()) {
+    Notes notes;
+    notes.warn(trouble);
+    ports_.say(notes.lines());
+  }
+  memory_trouble_ = trouble;
 }
 
 void Service::publish(const GoalUpdates& updates) {

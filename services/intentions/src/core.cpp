@@ -404,7 +404,7 @@ bool Core::take_person(const Received::Goal& goal, bool is_old, GoalEvent& event
   const GoalId& id = event.goal.id;
   const bool writes = event.kind == GoalEvent::Kind::kWritten;
   const std::string says = event.goal.requester;
-  const std::string who = named(says, goal.person);
+  std::string who = named(says, goal.person);
   event.goal.requester = who;
   if (goal.person && goal.person->role == "agent")
     event.goal.priority = std::min(event.goal.priority, kMostOfAgents);
@@ -415,7 +415,10 @@ bool Core::take_person(const Received::Goal& goal, bool is_old, GoalEvent& event
                            .who = who,
                            .text = "goal " + describe(id) + (text.empty() ? "" : ", " + text)});
   };
-  const auto found = owners_.find(id);
+  auto found = owners_.find(id);
+  if (found == owners_.end() && goal.person)
+    if (const Goal* const known = executor_.goal(id))
+      found = owners_.insert({id, {Identity{}, *known}}).first;
   if (found == owners_.end()) {
     if (writes) {
       owners_[id] = {goal.person, event.goal};
@@ -424,9 +427,16 @@ bool Core::take_person(const Received::Goal& goal, bool is_old, GoalEvent& event
     return true;
   }
   Owner& owner = found->second;
+  // From before a restart: its name says whose it is.
+  if (owner.person == Identity{} && goal.person && !goal.person->name.empty() &&
+      (owner.goal.requester == goal.person->text() ||
+       named(owner.goal.requester, goal.person) == owner.goal.requester))
+    owner.person = goal.person;
   const auto asked = requesters_.find(id);
   const bool by_its_program = !writes && goal.event.why.empty() && asked != requesters_.end() &&
                               asked->second == goal.writer;  // which knows for whom
+  if (by_its_program)
+    who = owner.goal.requester;
   if (!by_its_program && !may_end(goal.person, owner.person)) {
     const std::string why = "goal " + describe(id) + " of " + quoted(owner.goal.requester) + ": " +
                             (goal.person->name.empty() ? "a stranger" : goal.person->name) +
@@ -443,9 +453,10 @@ bool Core::take_person(const Received::Goal& goal, bool is_old, GoalEvent& event
     event.needs_approval = false;
     event.goal.requester = owner.goal.requester;
   }
-  if (!writes)
+  const auto logged = logged_.find(id);
+  if (!writes && (logged == logged_.end() || !ended(logged->second)))
     note(v1::AUDIT_CANCELED, event.why);
-  else if (event.goal != owner.goal)
+  else if (writes && event.goal != owner.goal)
     note(v1::AUDIT_CHANGED, describe(Request{event.goal.functor, event.goal.arguments}));
   if (writes)
     owner.goal = event.goal;
@@ -508,7 +519,8 @@ void Core::report(const GoalUpdates& updates, Notes& notes) {
     logged_[status.id] = status.state;
     notes.info("goal " + describe(status.id) + ", " + quoted(status.functor) + " of " +
                quoted(status.requester) + ": " + word_of(status.state) +
-               (status.reason.empty() ? "" : ": " + status.reason));
+               (status.reason.empty() ? "" : ": " + status.reason) +
+               (status.note.empty() ? "" : "; it " + status.note));
   }
   for (const GoalId& id : updates.withdrawn) {
     requesters_.erase(id);

@@ -327,7 +327,7 @@ class Programs : public test::LinePlayer {
 };
 
 TEST(IntentionsCore, DoesAsWritten) {
-  EXPECT_EQ(test::play<Programs>("services/intentions/test/core.txt"), 34);
+  EXPECT_EQ(test::play<Programs>("services/intentions/test/core.txt"), 35);
 }
 
 class CoreTest : public testing::Test, protected Site {};
@@ -427,6 +427,38 @@ TEST_F(CoreTest, AStepFromRememberedGoalsGoesOnAsTheCoreBeforeIt) {
   ASSERT_EQ(outputs.intended.behaviors.size(), newest.intended.behaviors.size());
   for (std::size_t i = 0; i < outputs.intended.behaviors.size(); ++i)
     EXPECT_EQ(outputs.intended.behaviors[i].parameters, newest.intended.behaviors[i].parameters);
+}
+
+TEST_F(CoreTest, AGoalThatIsKeptOverARestartIsStillItsOwners) {
+  Memory memory;
+  Core before(remembering({}));
+  const auto of = [](const Core::Writer& writer, const Identity& person) {
+    Core::Received::Goal goal = written(1, writer);
+    goal.event.goal.writer_lost = v1::WRITER_LOST_KEEP;
+    goal.person = person;
+    return goal;
+  };
+  const auto withdraw = [&](Core& core, const Identity& person) {
+    inputs.received.goals = {of(kJohn, person)};
+    inputs.received.goals[0].event.kind = GoalEvent::Kind::kDisposed;
+    step(core);
+  };
+  inputs.received.goals = {of(kKaren, {"karen", "agent"})};
+  for (int i = 0; i < 3; ++i)
+    if (const auto& work = step(before).intended.updates.work)
+      memory.work = *work;
+  for (const Identity& who : {Identity{"karen", "agent"}, Identity{"anna", "operator"}}) {
+    Core next(remembering(memory));
+    statuses.clear();
+    is_new = true;
+    for (int i = 0; i < 31; ++i)
+      step(next);
+    ASSERT_EQ(state(1), v1::GOAL_UNDERWAY);
+    withdraw(next, {"john", "agent"});
+    EXPECT_EQ(state(1), v1::GOAL_UNDERWAY);
+    withdraw(next, who);
+    EXPECT_EQ(state(1), v1::GOAL_CANCELED) << who.name;
+  }
 }
 
 TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {

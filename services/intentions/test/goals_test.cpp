@@ -79,6 +79,7 @@ class Desk : public test::LinePlayer {
         {"published", [this] { return std::to_string(bench_->published); }},
         {"functor of 1", [this] { return bench_->status(1).functor; }},
         {"pose", [this] { return told(bench_->world.robot.pose_in_odom); }},
+        {"note of 1", [this] { return bench_->status(1).note; }},
         {"step of 1", [this] { return bench_->status(1).step; }},
         {"elapsed of 1", [this] { return plain(bench_->status(1).elapsed); }},
         {"elapsed of 2", [this] { return plain(bench_->status(2).elapsed); }}};
@@ -170,7 +171,7 @@ class Desk : public test::LinePlayer {
 };
 
 TEST(Goals, DoAsWritten) {
-  EXPECT_EQ(test::play<Desk>("services/intentions/test/goals.txt"), 48);
+  EXPECT_EQ(test::play<Desk>("services/intentions/test/goals.txt"), 52);
 }
 
 }  // namespace

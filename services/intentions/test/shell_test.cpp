@@ -108,6 +108,27 @@ TEST_F(ShellTest, AProgramThatWasSilentIsBelievedAgainAndItsGoalsGoOn) {
   EXPECT_TRUE(believed());
 }
 
+TEST_F(ShellTest, IsDegradedWhileItsMemoryCannotBeWrittenAndSavesItLater) {
+  const test::TempDir dir;
+  start(dir.path("memory"));
+  cycle();
+  const std::string in_the_way = dir.path("memory.work");
+  std::filesystem::remove(in_the_way);
+  std::filesystem::create_directories(in_the_way + "/folder");
+  const v1::GoalId id = goals.ask(go_to(9.0, 0.0));
+  for (int i = 0; i < 3; ++i)
+    cycle();
+  EXPECT_EQ(service->status().state, v1::SERVICE_DEGRADED);
+  EXPECT_TRUE(service->status().reason.starts_with("the memory file: cannot be written"))
+      << service->status().reason;
+  std::filesystem::remove_all(in_the_way);
+  for (int i = 0; i < 12; ++i)
+    cycle();
+  EXPECT_EQ(service->status().state, v1::SERVICE_RUNNING) << service->status().reason;
+  EXPECT_TRUE(std::filesystem::is_regular_file(in_the_way));
+  EXPECT_EQ(state(id), v1::GOAL_UNDERWAY);
+}
+
 TEST_F(ShellTest, ARestartFindsTheGoalsThatAreThereAndRedoesNoneThatHasEnded) {
   const test::TempDir dir;
   start(dir.path("memory"));

@@ -137,8 +137,11 @@ void Service::publish_map() {
 
 void Service::remember() {
   const std::string trouble = saver_.offer([this] { return sealed(saved(*core_->remembered())); });
+  constexpr const char* kMeans = ": a restart will not know where the robot is";
   if (!trouble.empty())
-    ports_.say({{Note::Level::warning, trouble + ": a restart will not know where the robot is"}});
+    ports_.say({{Note::Level::warning, trouble + kMeans}});
+  if (!saver_.trouble().empty())
+    ports_.degrade(saver_.trouble() + kMeans);
 }
 
 runtime::Component component() {

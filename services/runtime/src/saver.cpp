@@ -28,8 +28,8 @@ std::string Saver::offer(const std::function<std::string()>& text) {
   } catch (const std::system_error& error) {  // no thread was available
     trouble = path_ + ": cannot be written: " + error.what();
   }
-  const bool worked = std::exchange(works_, trouble.empty());
-  return worked ? trouble : "";
+  const bool worked = std::exchange(trouble_, trouble).empty();
+  return worked ? trouble_ : "";
 }
 
 }  // namespace saphira::runtime

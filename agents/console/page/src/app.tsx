@@ -5,7 +5,7 @@ import {Drive} from './drive';
 import {DrivePanel} from './drive_panel';
 import {degrees, heading} from './geometry';
 import {Legend} from './legend';
-import {gone, Link} from './link';
+import {Link} from './link';
 import {LinkHistory} from './link_panel';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
 import {loadMap, saveMap, type Sketch} from './map_edit';
@@ -31,7 +31,7 @@ function look(link: Link, now: number): Seen {
   const robot = link.get<RobotState>('robot/state');
   const age = robot ? now - robot.at : Infinity;
   if (!link.mayWatch) return {state: 'locked', age};
-  if (!link.connected || now - link.heard > gone) return {state: 'gone', age};
+  if (!link.isThere(now)) return {state: 'gone', age};
   if (!robot) return {state: 'silent', age};
   return {state: age > old ? 'old' : 'live', age};
 }

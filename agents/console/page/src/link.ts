@@ -270,10 +270,13 @@ export class Link {
     if (this.goals.size > mostGoals) this.goals.delete(this.goals.keys().next().value!);
   }
 
+  // Something of the console was heard lately.
+  isThere(now = performance.now()): boolean { return this.connected && now - this.heard <= gone; }
+
   // After a cut: what it was, and what has become of control.
   private watch() {
     const now = performance.now();
-    if (!this.connected || !this.commanding || now - this.heard > gone) {
+    if (!this.isThere(now) || !this.commanding) {
       if (this.before.id > 0) this.cut = {...(this.cut ?? {since: this.heard, ...this.before}), back: undefined};
       return;
     }

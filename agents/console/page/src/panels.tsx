@@ -11,7 +11,9 @@ import {clock, forPage, instanceWords, keyless, percent, seconds} from './words'
 
 const stale = 2000;          // [ms] the status of an open goal comes each second
 const word = (name: string) => name.replace(/^[A-Z]+_/, '').toLowerCase().replace(/_/g, ' ');
-export const nothing = (text: string) => <p class="nothing">{text}</p>;
+// link: the text is of the robot, so it is not known without a connection.
+export const nothing = (text: string, link?: Link) =>
+  <p class="nothing">{link && !link.isThere() ? 'Not known: there is no connection to the console.' : text}</p>;
 
 // An SVG, since the page's security policy forbids styles in elements.
 export function Bar({value, label}: {value: number; label: string}) {
@@ -69,7 +71,7 @@ export function Goals({link, now}: {link: Link; now: number}) {
       </div>
       {told && <p class={told.well ? 'told' : 'told bad'} role="status">{forPage(told.text)}</p>}
     </form>
-    {open.length + over.length === 0 && nothing('No goal is underway. Click on the map to send the robot somewhere.')}
+    {open.length + over.length === 0 && nothing('No goal is underway. Click on the map to send the robot somewhere.', link)}
     {many && <h2>One goal after the other, in this order</h2>}
     <ol class="cards" aria-label="Goals">{open.map(g => <GoalCard key={g.id} pursued={g} many={many} link={link} now={now} />)}</ol>
     {over.length > 0 && <h2>Ended</h2>}
@@ -124,7 +126,7 @@ export function BehaviorList({link, now}: {link: Link; now: number}) {
   const state = link.data<Behaviors>('behaviors/state');
   return <>
     {state ? <BehaviorTable state={state} link={link} />
-      : nothing('The program "behaviors" is silent. See Programs.')}
+      : nothing('The program "behaviors" is silent. See Programs.', link)}
     <OfPrograms link={link} now={now} show={mind => <BehaviorTable state={mind.behaviors} />} />
   </>;
 }
@@ -139,7 +141,7 @@ function BehaviorTable({state, link}: {state: Behaviors; link?: Link}) {
   return <>
     {!state.control && <p class="told bad">Behavior control is off: the blend does not reach the robot.</p>}
     {state.trouble && <p class="told bad">{state.trouble}</p>}
-    {state.behaviors.length + off.length === 0 && nothing('No behavior is intended: the robot has no goal.')}
+    {state.behaviors.length + off.length === 0 && nothing('No behavior is intended: the robot has no goal.', link)}
     {state.behaviors.length + off.length > 0 && <table class="behaviors">
       <thead><tr><th scope="col">{may && 'On, '}Behavior</th><th scope="col">Turn, weight</th><th scope="col">Speed, weight</th></tr></thead>
       <tbody>{state.behaviors.map(b => <BehaviorRow key={b.name} b={b} name={alone(b) ? b.schema : instanceWords(b.name)} open={open === b.name} toggle={() => setOpen(open === b.name ? '' : b.name)}
@@ -188,14 +190,14 @@ export function IntentionTree({link, now}: {link: Link; now: number}) {
   const intentions = link.data<Intentions>('intentions');
   return <>
     {intentions ? <Tree intentions={intentions} link={link} />
-      : nothing('The program "intentions" is silent. See Programs.')}
+      : nothing('The program "intentions" is silent. See Programs.', link)}
     <OfPrograms link={link} now={now} show={mind => <Tree intentions={mind.intended} />} />
   </>;
 }
 const isHeld = (node: IntentionNode) => node.state === 'INTENTION_INTERRUPTED' || node.state === 'INTENTION_SUSPENDED';
 // link: of the robot's own intentions, which can be interrupted.
 function Tree({intentions, link}: {intentions: Intentions; link?: Link}) {
-  if (intentions.nodes.length === 0) return nothing('The robot intends nothing: it has no goal.');
+  if (intentions.nodes.length === 0) return nothing('The robot intends nothing: it has no goal.', link);
   const depths = new Map<number, number>();
   // The goal in front holds these: nobody can resume them.
   const preempted = link ? pursued(link).open.filter(g => g.status.state === 'GOAL_SUSPENDED') : [];
@@ -231,7 +233,7 @@ function processAsk(link: Link, service: string, process: string, functor: strin
 export function WhyTree({link}: {link: Link}) {
   const why = link.data<Why>('why');
   const beliefs = link.data<{beliefs: Belief[]}>('beliefs')?.beliefs ?? [];
-  if (!why) return nothing('No cycle of the robot has been heard yet.');
+  if (!why) return nothing('No cycle of the robot has been heard yet.', link);
   return <>
     <ul class="why"><Because cause={why.tree} depth={0} /></ul>
     <details class="beliefs"><summary>Beliefs of the activities ({beliefs.length})</summary>
@@ -274,7 +276,7 @@ export function Programs({link, now}: {link: Link; now: number}) {
           <td class="number">{age.toFixed(0)} s</td></tr>
           {data.reason && <tr key={key + 'r'}><td colSpan={5} class="small reason">{forPage(data.reason)}</td></tr>}</>;
       })}</tbody></table>
-    {programs.length === 0 && nothing('No program is on the bus.')}
+    {programs.length === 0 && nothing('No program is on the bus.', link)}
     <h2>Micro-tasks: interrupt and resume</h2>
     <p class="small">A micro-task is a part of a service that runs in each cycle. Interrupt holds it until Resume.
       {link.mayOperate ? '' : ' Both need a key to operate.'}</p>
@@ -317,7 +319,7 @@ export function Messages({link}: {link: Link}) {
     </form>
     <label class="check"><input type="checkbox" checked={all} onChange={e => setAll((e.target as HTMLInputElement).checked)} /> everything that programs log</label>
     {told !== undefined && <label class="check"><input type="checkbox" checked={told} onChange={async e => setTold(await wantNotifications((e.target as HTMLInputElement).checked))} /> tell me of stops, failures and a low battery while I look elsewhere</label>}
-    {lines.length === 0 && nothing('No messages, and no warnings.')}
+    {lines.length === 0 && nothing('No messages, and no warnings.', link)}
     <ul class="lines" aria-live="polite">{lines.map(l => <li key={l.key} class={l.level}><time class="faint">{clock(l.at)}</time>
       <span><span class="faint">{l.from}</span> {forPage(l.text)}</span></li>)}</ul>
   </>;

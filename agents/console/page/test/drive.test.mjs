@@ -103,7 +103,8 @@ test('everybody may stop the robot, also without the key', async () => {
   assert.equal(await guest.getByRole('button', {name: 'Drive', exact: true}).count(), 0);
   assert.ok(await guest.getByRole('button', {name: 'Send'}).isDisabled());
   await guest.getByRole('button', {name: 'Emergency stop'}).click();
-  for (const page of [ann, guest]) await page.getByRole('alert').filter({hasText: 'pressed by'}).waitFor();
+  for (const page of [ann, guest])
+    await page.getByRole('alert').filter({hasText: 'pressed by a visitor without a key at the console'}).waitFor();
   assert.ok(await guest.getByRole('button', {name: 'Reset'}).isDisabled());
   const reset = async () => {
     await ann.getByRole('button', {name: 'Reset'}).click();

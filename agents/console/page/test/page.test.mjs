@@ -103,6 +103,18 @@ test('old news are told with their age', async () => {
   await leave(page);
 });
 
+test('without a connection nothing is said of goals and programs', async () => {
+  const page = await person();
+  await open(page);
+  await page.getByRole('tab', {name: 'Intentions'}).click();
+  const idle = page.getByText('The robot intends nothing');
+  await idle.waitFor();
+  await page.evaluate(() => Object.defineProperty(saphira, 'connected', {get: () => false, set() {}}));
+  await page.getByText('Not known: there is no connection to the console.').waitFor();
+  assert.equal(await idle.count(), 0);
+  await leave(page);
+});
+
 for (const [name, options] of [['light', {colorScheme: 'light'}], ['dark', {colorScheme: 'dark'}],
                                ['a telephone', {viewport: {width: 320, height: 640}, hasTouch: true, isMobile: true}]])
   test(`axe finds nothing, and nothing is cut off: ${name}`, async () => {

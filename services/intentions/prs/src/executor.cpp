@@ -13,7 +13,10 @@ namespace {
 
 /// The longest wait for the place of the robot, after a restart.
 constexpr Ticks kFindsPlace = 50;
-/// A goal from before a restart that is not heard for so long has been withdrawn.
+/// A goal from before a restart that is to be kept goes on then, though nobody asks for it again:
+/// by then the withdrawals of programs that are there have come. The first step may be of ten.
+constexpr Ticks kKept = 30;
+/// Another one that is not heard for so long ends: its program is gone.
 constexpr Ticks kUnheard = 6000;
 /// [s] A goal of a program that is not heard waits so long for it: a network is back by then.
 constexpr double kLostEnds = 10.0;
@@ -82,9 +85,9 @@ Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions opti
   for (const Ending& ending : memory.endings)
     remember(ending);
   const Work& work = memory.work;
-  stops_ = Stops(work.heeds);
   if (work.epoch == 0)
     return;
+  stops_ = Stops(work.heeds);
   epoch_ = work.epoch;
   cycle_ = work.cycle;
   odom_ = work.odom;
@@ -106,7 +109,8 @@ void Executor::archive(Archive& a) {
       "remembered_order", remembered_order_)("ended_order", ended_order_)(
       "next_order", next_order_)("now", now_)("awake", awake_)("epoch", epoch_)("cycle", cycle_)(
       "robot_here", robot_here_)("on_map", on_map_)("recalled", recalled_)("person", person_)(
-      "stops", stops_)("odom", odom_)("withdrawn", withdrawn_)("endings", endings_);
+      "stops", stops_)("odom", odom_)("withdrawn", withdrawn_)("endings", endings_)("other_epoch",
+                                                                                    other_epoch_);
   if (a.restores())
     for (auto& [id, entry] : entries_) {
       entry.schema = registry_->share(entry.goal.functor);
@@ -166,6 +170,7 @@ Outputs Executor::step(const Inputs& inputs) {
   pass_time(inputs);
   for (const GoalEvent& event : inputs.events)
     take_in(event);
+  settle_unheard();
   for (auto& [id, entry] : entries_) {
     if (std::exchange(entry.fresh, false))
       entry.accepted = now_;
@@ -227,6 +232,7 @@ Outputs Executor::step(const Inputs& inputs) {
 
 void Executor::pass_time(const Inputs& inputs) {
   Ticks passed = 0;
+  other_epoch_ = other_epoch_ || inputs.epoch != epoch_;
   if (inputs.epoch != epoch_)
     passed = epoch_ == 0 ? 0 : 1;
   else if (inputs.cycle > cycle_)
@@ -235,8 +241,6 @@ void Executor::pass_time(const Inputs& inputs) {
   awake_ += std::min(passed, kLongestStep);
   epoch_ = inputs.epoch;
   cycle_ = inputs.cycle;
-  if (awake_ - recalled_ > kUnheard)
-    unheard_.clear();
 }
 
 // --- goals from the bus
@@ -246,7 +250,9 @@ void Executor::take_in(const GoalEvent& event) {
     take_written(event);
     return;
   }
-  const auto found = entries_.find(event.goal.id);
+  auto found = entries_.find(event.goal.id);
+  if (found == entries_.end() && event.kind == GoalEvent::Kind::kDisposed)
+    found = take_up(event.goal.id);
   if (found == entries_.end() || !open(found->second.status))
     return;
   Entry& entry = found->second;
@@ -277,6 +283,7 @@ void Executor::take_written(const GoalEvent& event) {
       entry.refusal.clear();  // taken back
     return;
   }
+  unheard_.erase(goal.id);
   Entry& entry = entries_[goal.id];
   entry.goal = goal;
   entry.accepted = now_;
@@ -578,6 +585,13 @@ void Executor::end_driving(const std::string& why) {
   for (auto& [id, entry] : entries_)
     if (open(entry.status) && drives(entry))
       end(entry, v1::GOAL_CANCELED, v1::CODE_STOPPED, why);
+  std::vector<GoalId> driving;
+  for (const auto& [id, entry] : unheard_)
+    if (const Schema* const schema = registry_->find(entry.goal.functor);
+        schema == nullptr || (!schema->concurrent && !schema->replaces))
+      driving.push_back(id);
+  for (const GoalId& id : driving)
+    end_unheard(id, v1::CODE_STOPPED, why);
 }
 
 /// The present work of an intention, for people: an activity of the language uses the words of its
@@ -688,17 +702,18 @@ void Executor::begin(Entry& entry) {
                              entry.schema->timeout, entry.schema->concurrent);
 }
 
-/// Takes up a goal from before the restart of the service, which is heard again; end(): there is
-/// none that can go on.
+/// Takes up a goal from before the restart of the service; end(): there is none that can go on.
 Executor::Entries::iterator Executor::take_up(const GoalId& id) {
-  auto known = unheard_.extract(id);
-  if (!known)
+  const auto unheard = unheard_.find(id);
+  if (unheard == unheard_.end())
     return entries_.end();
-  Entry& entry = known.mapped();
-  entry.schema = registry_->share(entry.goal.functor);
+  std::shared_ptr<const Schema> schema = registry_->share(unheard->second.goal.functor);
   Arguments complete;
-  if (!entry.schema || !check_arguments(*entry.schema, entry.arguments, complete).empty())
+  if (!schema || !check_arguments(*schema, unheard->second.arguments, complete).empty())
     return entries_.end();
+  auto known = unheard_.extract(unheard);
+  Entry& entry = known.mapped();
+  entry.schema = std::move(schema);
   entry.before = true;
   try {
     if (entry.node != 0)
@@ -716,6 +731,49 @@ Executor::Entries::iterator Executor::take_up(const GoalId& id) {
   if (odom_ && entry.frame != *odom_)
     meet_odom(entry, *odom_);
   return entries_.insert(std::move(known)).position;
+}
+
+/// Goals from before a restart that nobody has asked for again. A goal that is to be kept goes on,
+/// unless the bridge was started again as well: a robot does not set out by itself once it is
+/// switched on.
+void Executor::settle_unheard() {
+  const Ticks waited = awake_ - recalled_;
+  std::vector<GoalId> due;
+  for (const auto& [id, entry] : unheard_)
+    if (waited > kUnheard || (waited >= kKept && entry.goal.writer_lost == v1::WRITER_LOST_KEEP))
+      due.push_back(id);
+  for (const GoalId& id : due) {
+    const bool kept = unheard_.at(id).goal.writer_lost == v1::WRITER_LOST_KEEP;
+    if (kept && !other_epoch_)
+      if (const auto found = take_up(id); found != entries_.end()) {
+        std::string& told = found->second.status.note;
+        told += (told.empty() ? "" : ", and ") +
+                std::string("is kept: intentions was restarted, and nobody asks for it any more");
+        continue;
+      }
+    end_unheard(id, v1::CODE_WRITER_LOST,
+                std::string("intentions was restarted, and the program that asked for it has not "
+                            "been heard since") +
+                    (!kept          ? ""
+                     : other_epoch_ ? "; it was to be kept, and the bridge was restarted as well: "
+                                      "ask again"
+                                    : "; it was to be kept, and its activity is another now"));
+  }
+}
+
+void Executor::end_unheard(const GoalId& id, GoalCode code, const std::string& why) {
+  auto known = unheard_.extract(id);
+  Entry& entry = known.mapped();
+  entry.node = 0;
+  entry.tree = {};
+  end(entries_.insert(std::move(known)).position->second, v1::GOAL_CANCELED, code, why);
+}
+
+const Goal* Executor::goal(const GoalId& id) const {
+  for (const Entries* const among : {&entries_, &unheard_})
+    if (const auto found = among->find(id); found != among->end())
+      return &found->second.goal;
+  return nullptr;
 }
 
 /// That activities have set, without those that end with an intention: they are saved with it.

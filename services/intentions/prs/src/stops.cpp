@@ -31,7 +31,8 @@ bool Stops::take(const v1::StopId& newest, bool was_before) {
   const bool own = found != own_.end();
   // The bridge comes to a later one of our own by itself.
   const bool overtaken = std::find(found, own_.end(), heeds_) != own_.end();
-  const bool old = (!own && newest == heeds_) || (was_before && heeds_ == v1::StopId{});
+  const bool old =
+      (!own && newest == heeds_) || (was_before && !remembers_ && heeds_ == v1::StopId{});
   seen_ = newest;
   if (!overtaken)
     heeds_ = newest;

@@ -43,6 +43,11 @@ struct Visitor {
 Visitor visitor_of(const AccessSettings& settings, const security::DoorKeys& keys,
                    std::string_view key, std::int64_t now);
 
+/// The visitor's name for the rest of the system. The name of a key is certain. Without that the
+/// page itself says one: it is shown without brackets, which hold roles, and a visitor without any
+/// key is told apart.
+std::string name_of(const Visitor& visitor, const std::string& claimed);
+
 /// Watching from this machine needs no key. A host or an origin that this program does not have on
 /// this machine is that of a proxy or a tunnel: anybody may be behind it.
 bool may_watch(const AccessSettings& settings, const Caller& caller);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/cycle.hpp"
 #include "saphira/idl/behavior.hpp"
 #include "saphira/idl/intention.hpp"
 #include "saphira/idl/map.hpp"
@@ -43,6 +44,9 @@ struct Situation {
   /// [s] since the newest robot/state. For a robot in single step, which may stand still: 0.
   double silence = 0.0;
   double listened = 0.0;  ///< [s] time of listening
+  /// [1/s] the robot's cycles in a second of the clock that has statuses published: a simulation
+  /// has more or fewer than a robot [0: not known yet].
+  double pace = 1.0 / kCycle;
 
   std::optional<v1::RobotState> robot;       ///< of N: the behaviors' input
   std::optional<v1::Grant> grant;            ///< the grant for the command of N

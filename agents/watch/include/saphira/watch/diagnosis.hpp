@@ -84,6 +84,10 @@ std::vector<Finding> diagnose(const BusFacts& facts);
 std::vector<Finding> diagnose(const BusFacts& facts, const std::string& one,
                               const std::string& other);
 
+/// In words, which of these programs have not let a member in, though they are of its site by name.
+/// Empty: none. A handshake lasts a moment, so this counts where nobody is heard.
+std::string why_kept_out(const std::vector<bus::ProgramEntry>& found, const std::string& member);
+
 /// The domains with programs on this machine, from the text of /proc/net/udp.
 std::vector<std::uint32_t> domains_in(std::string_view sockets);
 /// The port of a domain at which programs announce themselves, on loopback or on a network.

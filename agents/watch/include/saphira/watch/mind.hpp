@@ -69,6 +69,29 @@ class Past {
   std::map<std::uint64_t, T> samples_;
 };
 
+/// How many cycles the robot has in a second of a clock.
+class Pace {
+ public:
+  /// now: [s]
+  void note(const v1::Stamp& stamp, double now) {
+    if (stamp.epoch != first_.epoch || stamp.cycle < first_.cycle || now - began_ > kRenewed) {
+      first_ = stamp;
+      began_ = now;
+    }
+    if (now - began_ >= kShortest && stamp.cycle > first_.cycle)
+      pace_ = static_cast<double>(stamp.cycle - first_.cycle) / (now - began_);
+  }
+  /// [1/s] [0: not known yet]
+  double get() const { return pace_; }
+
+ private:
+  static constexpr double kShortest = 0.2;  // [s] for a measurement
+  static constexpr double kRenewed = 10.0;  // [s] the rate of a simulation may change
+  v1::Stamp first_;
+  double began_ = 0.0;
+  double pace_ = 0.0;
+};
+
 /// The robot's goals, intentions, behaviors and beliefs from the bus: of now and of past cycles.
 class Mind {
  public:
@@ -85,6 +108,8 @@ class Mind {
   void listen(std::chrono::milliseconds time, const bus::Stop& stop);
 
   const v1::RobotState* robot() const { return robots_.newest(); }
+  /// It is known how many cycles the robot has in a second.
+  bool knows_pace() const { return pace_.get() > 0.0; }
   /// [s] since that came.
   double silence() const { return seconds_since(robot_came_); }
   const v1::Intentions* intentions() const { return intentions_.newest(); }
@@ -150,6 +175,7 @@ class Mind {
   std::unique_ptr<Recall> recall_;
   Clock::time_point began_ = Clock::now();
   Clock::time_point robot_came_ = Clock::now();
+  Pace pace_;
 
   Newest<v1::RobotDescription> description_{node_, bus::topics::kRobotDescription};
   Past<v1::RobotState> robots_;

@@ -134,9 +134,22 @@ Expression Expressions::call(const Form& form, const std::string& name, bool act
                                  did_you_mean(name, names_of(definition_.functions())));
     }
   }
+  if ((name == "say" || name == "format") && form.items[1].kind == Form::Kind::kText)
+    check_blanks(form.items[1], given - 1);
   for (std::size_t i = 1; i < form.items.size(); ++i)
     result.arguments.push_back(expression(form.items[i], actions));
   return result;
+}
+
+/// Each ~a of a text has an argument.
+void Expressions::check_blanks(const Form& text, std::size_t given) {
+  std::size_t blanks = 0;
+  for (std::size_t i = 0; i + 1 < text.text.size(); ++i)
+    if (text.text[i] == '~')
+      blanks += std::string_view("aAsS").find(text.text[++i]) != std::string_view::npos ? 1 : 0;
+  if (blanks != given)
+    definition_.fail(text, quoted(text.text) + " expected " + count(blanks, blanks) +
+                               " for its ~a, found " + std::to_string(given));
 }
 
 Expression Expressions::set(const Form& form, bool actions) {

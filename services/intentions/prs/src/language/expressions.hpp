@@ -19,6 +19,7 @@ class Expressions {
  private:
   Expression variable(const Form& form);
   Expression call(const Form& form, const std::string& name, bool actions);
+  void check_blanks(const Form& text, std::size_t given);
   Expression set(const Form& form, bool actions);
   std::shared_ptr<const Function> shared(const Function& function);
 

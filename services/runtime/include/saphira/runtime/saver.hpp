@@ -17,6 +17,8 @@ class Saver {
   /// Begins to write the result of `text`, where due. Returns a message for the log, once, where it
   /// cannot be written; otherwise empty.
   std::string offer(const std::function<std::string()>& text);
+  /// Why the newest state is not saved; empty: it is, as far as is known.
+  const std::string& trouble() const { return trouble_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -24,7 +26,7 @@ class Saver {
   std::string path_;
   Clock::time_point began_ = Clock::now();
   std::future<std::string> writing_;  ///< its trouble, in words
-  bool works_ = true;
+  std::string trouble_;
 };
 
 }  // namespace saphira::runtime

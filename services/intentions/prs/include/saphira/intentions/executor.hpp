@@ -133,6 +133,8 @@ class Executor {
         std::max<Ticks>(static_cast<Ticks>(cycle_) - awake_ + time, 0));
   }
 
+  /// The goal, also one from before a restart that was not heard again; null: not known.
+  const Goal* goal(const GoalId& id) const;
   /// Lets a goal begin that needs a person's approval. False: it waits for none.
   bool approve(const GoalId& id);
 
@@ -185,6 +187,8 @@ class Executor {
   void queue(Entry& entry, const Goal& front);
   void begin(Entry& entry);
   Entries::iterator take_up(const GoalId& id);
+  void settle_unheard();
+  void end_unheard(const GoalId& id, GoalCode code, const std::string& why);
   void begin_concurrent();
   std::vector<Belief> lasting_beliefs() const;
   std::optional<Work> take_work(bool changed);
@@ -199,8 +203,9 @@ class Executor {
   std::shared_ptr<Beliefs> beliefs_;
   Forest forest_;
   Entries entries_;
-  Entries unheard_;          ///< from before a restart
-  bool was_placed_ = false;  ///< before a restart it was known where the robot is on the map
+  Entries unheard_;           ///< from before a restart
+  bool other_epoch_ = false;  ///< the bridge was started again since that restart, or before it
+  bool was_placed_ = false;   ///< before a restart it was known where the robot is on the map
   std::uint64_t set_revision_ = 0;
   std::map<GoalId, Ending> remembered_;
   std::deque<GoalId> remembered_order_;

@@ -16,7 +16,7 @@ class Stops {
  public:
   Stops() = default;
   /// `heeds`: from before a restart.
-  explicit Stops(const v1::StopId& heeds) : heeds_(heeds), saved_(heeds) {}
+  explicit Stops(const v1::StopId& heeds) : heeds_(heeds), saved_(heeds), remembers_(true) {}
 
   /// A goal "stop" has begun for that requester.
   void ask(std::string requester, Ticks now);
@@ -41,7 +41,7 @@ class Stops {
   template <class Archive>
   void archive(Archive& a) {
     a("heeds", heeds_)("saved", saved_)("seen", seen_)("own", own_)("requester", requester_)(
-        "asked", asked_);
+        "asked", asked_)("remembers", remembers_);
   }
 
  private:
@@ -51,6 +51,7 @@ class Stops {
   std::deque<v1::StopId> own_;  ///< that may be on their way
   std::optional<std::string> requester_;
   Ticks asked_ = 0;
+  bool remembers_ = false;  ///< heeds_ is from before a restart, also where there was no stop
 };
 
 }  // namespace saphira::intentions
