@@ -19,7 +19,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds kAgain{20};  ///< between two commands: the topic is best effort
 constexpr double kResetLimit = 5.0;
 
-constexpr const char* kOtherStop = "; saphira goal stop, which is anybody's, stops the robot too";
+constexpr const char* kOtherStop =
+    "; saphira goal stop, which observers may too, and the STOP of a page stop the robot as well";
 
 /// A stop button of the terminal.
 class Button {

@@ -233,6 +233,11 @@ int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
     deployments.poll();
     goals.poll();
     const auto status = goals.status(*id);
+    if (status && !asked && bus::ended(status->state)) {
+      follower.show(*status);
+      complain("saphira: it had ended before\n");
+      return bus::kExitFailed;
+    }
     if (status && !asked) {
       goals.cancel(*id, options.why);
       asked = goals.delivered(2000);
@@ -364,7 +369,7 @@ void add_goal(CLI::App& app, Chosen& chosen) {
       "ACTIVITY name=value... | list | cancel ID | approve ID | activities [ACTIVITY]");
   command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
   command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")
-      ->check(at_least_zero())
+      ->check(above_zero())
       ->transform(number_in_unit("s"));
   command->add_option("--level", options->level, "of satisfaction that is enough (0..1)")
       ->check(between(0.0, 1.0));
