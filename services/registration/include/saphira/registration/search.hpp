@@ -35,9 +35,9 @@ struct SearchSettings {
   /// score of its old place for some metres yet.
   double near_memory = 0.8;
   double near_enough = 5.5;  ///< a part that is enough, whatever the whole score is
-  double agrees = 0.2;           ///< the limit of one reading's evidence for the present place...
-  double alike = 0.1;    ///< ...and its share against silent walls: others are alike elsewhere
-  double strange = 3.0;  ///< the limit of the evidence of echoes that a person or box explains
+  double agrees = 0.2;       ///< the limit of one reading's evidence for the present place...
+  double alike = 0.1;        ///< ...and its share against silent walls: others are alike elsewhere
+  double strange = 3.0;      ///< the limit of the evidence of echoes that a person or box explains
   /// Evidence against the present place of a wall where the map has an open door: ln(0.75 / 0.15).
   /// People have closed 15 % of the doors; elsewhere 75 % of a corridor's side is wall. One such
   /// door is ordinary, and several in a row are not.
@@ -68,9 +68,9 @@ struct SearchState {
   std::optional<Pose> odom;
   double travelled = 0.0;
   std::optional<Pose> own;
-  double own_score = 0.0;  ///< of the present place
+  double own_score = 0.0;   ///< of the present place
   double near_score = 0.0;  ///< the part of it that the last metres have given
-  int own_openings = 0;    ///< seen openings that the present place has
+  int own_openings = 0;     ///< seen openings that the present place has
   // Evidence against the present place, never below 0 (Page's test, 1954), so that the good
   // readings of a place before do not count.
   double against = 0.0;   ///< walls that are not heard
