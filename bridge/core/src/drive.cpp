@@ -213,7 +213,7 @@ void Core::keep_latches(double now) {
     kept_ = latches;
     put(KeepLatches{latches});
   }
-  // Whoever presses waits for a grant, at each press.
+  // A stop button waits for a grant, at each press.
   if (in_session() ? !estop || !settings_.lockstep : !estop && !pressed)
     return;
   grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
