@@ -103,7 +103,7 @@ inline bool is_sign(const std::string& word) {
   return word == "==" || word == "~" || word == "<" || word == ">" || word == "<=" || word == ">=";
 }
 
-/// Expects of a value what the line says: "NAME == NUMBER", likewise <, >, <= and >=, or "NAME ~
+/// Checks a value against its line: "NAME == NUMBER", likewise <, >, <= and >=, or "NAME ~
 /// NUMBER +- TOLERANCE".
 inline void expect_compared(const std::string& line, double is) {
   std::istringstream in(line);

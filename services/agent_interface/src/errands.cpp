@@ -51,7 +51,7 @@ void Dialogue::go_back(const Meaning& meaning, const Utterance& utterance,
     refuse(utterance, "I do not know where that is: my map has no place called home or start", out);
 }
 
-/// Slower holds until what the robot does has ended; where it does nothing, for the speaker's next
+/// A slow pace holds until the present tasks have ended; without one, it is for the speaker's next
 /// order.
 void Dialogue::change_pace(bool slower, const Utterance& utterance, const Situation& situation,
                            Outputs& out) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 
 #include "words.hpp"
 
@@ -12,8 +13,9 @@ namespace {
 constexpr std::size_t kLongestUtterance = 40;  // words; a longer one is no command
 constexpr std::size_t kLongestName = 4;        // words: "EJ two thirty one"
 constexpr std::size_t kMostMatches = 1000;
-constexpr std::size_t kMostSteps = 8;  // of a sequence
-constexpr int kMostAsides = 3;         // of an order
+constexpr std::size_t kMostSteps = 8;    // of a sequence
+constexpr int kMostAsides = 3;           // of an order
+constexpr std::size_t kMostTries = 100;  // to understand a sentence without its asides
 /// Units behind a number without a blank, and their words in the grammars.
 constexpr std::array<std::pair<const char*, const char*>, 7> kUnits{{{"m", "meters"},
                                                                      {"cm", "cm"},
@@ -361,11 +363,15 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     if (!ways.empty() && takes_text(last.functor))
       result.apart = ways.front();
   };
-  // "In ten minutes go home", "go home at five", "go home, but not through the lobby".
+  // "In ten minutes go home", "go home at five", "go home, but not through the lobby". The tries
+  // are bounded: a person may say "slowly" twenty times, and the stop behind it has to be heard.
+  std::set<std::pair<int, std::vector<std::string>>> tried;
   const auto with_asides = [&](const auto& again, const std::vector<std::string>& sentence,
                                int others) -> bool {
     for (const Use use : {Use::timed, Use::during})
       for (auto& [aside, rest] : asides(sentence, use)) {
+        if (tried.size() >= kMostTries || !tried.emplace(others, rest).second)
+          continue;
         if (others > 0) {
           if (!again(again, rest, others - 1))
             continue;
@@ -406,7 +412,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.meanings = look(words, result.addressed, replies, Use::reply);
   if (result.meanings.empty() && urgent.meaning)
     result.meanings = {*urgent.meaning};
-  else if (result.meanings.empty() && result.addressed)
+  else if (result.meanings.empty() && result.addressed && order.size() <= kLongestUtterance)
     for (int others = 0; others < kMostAsides && !with_asides(with_asides, order, others);)
       ++others;
   const std::vector<Meaning> as_reply = look(words, false, true, Use::reply);

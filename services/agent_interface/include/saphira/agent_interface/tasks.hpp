@@ -183,8 +183,8 @@ class Tasks {
   /// The utterance that an activity's message answers; 0, 0: none.
   UtteranceId spoken_for() const;
 
-  /// The lasting goals with their later steps, what a stop has ended, and the orders for later.
-  /// Other goals, and all of programs, end with the dialogue.
+  /// The lasting goals with their later steps, the tasks that a stop has ended, and the orders for
+  /// later. Other goals, and all of programs, end with the dialogue.
   void archive(Archive& a);
 
  private:

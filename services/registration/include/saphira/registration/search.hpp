@@ -114,8 +114,8 @@ class Search {
   void suspect(const PoseFilter& filter);
   /// True where no other place has a higher score than the present one.
   bool own_is_best() const;
-  /// The near part of the present place's score, by what is usual for that score or enough: below 1
-  /// the last metres fit worse than those before.
+  /// The score of the last metres at the present place, divided by its usual share of the whole
+  /// score (`near_enough` at most): below 1 they fit worse than the metres before.
   double near_share() const;
   /// The present place has this score, near and far.
   void set_own_score(double score);

@@ -31,7 +31,7 @@ class Stops {
 
   /// The requester for whom the bridge is to be asked in this cycle; none: it is not.
   std::optional<std::string> asks(Ticks now, bool confirms) const;
-  /// The bridge has confirmed what was asked for.
+  /// No stop is asked for that the bridge has not confirmed.
   bool confirmed() const { return !requester_; }
   /// Goals that drive come after it.
   const v1::StopId& heeds() const { return heeds_; }
