@@ -488,6 +488,9 @@ class BusRobot final : public Robot {
     if (!grant)
       return;
     take_stop(ends, *grant);
+    // Who asked to drive under an emergency stop has to let go once after its reset.
+    if (std::exchange(estopped_, grant->estopped) && !grant->estopped)
+      write(ends.node, ends, {.stamp = stamp_});
     std::string news;
     for (const v1::Refusal& refusal : grant->refused)
       if (is_named(refusal.source, source_))
@@ -659,6 +662,7 @@ class BusRobot final : public Robot {
   std::uint64_t number_ = 0;
   std::string news_;
   bool told_limit_ = false;
+  bool estopped_ = false;  // by the newest grant
   bus::StopNotice notice_;
 
   // Shared with the program's thread, as those of Robot.

@@ -127,6 +127,29 @@ TEST_F(OnBus, AStoppedProgramDoesNotDriveOn) {
   EXPECT_NE(program.output().find("stopped by test"), std::string::npos) << program.output();
 }
 
+TEST_F(OnBus, AProgramBegunUnderAnEmergencyStopDrivesWhenTheRobotIsHandedBack) {
+  cli({"estop"});
+  Process program = example("direct");
+  EXPECT_TRUE(wait_until(
+      [&] {
+        const auto grant = grants_.take_newest();
+        return grant && grant->estopped && !grant->refused.empty();
+      },
+      kPatience))
+      << program.output();
+  cli({"estop", "reset"});
+  EXPECT_TRUE(wait_until(
+      [&] {
+        const auto grant = grants_.take_newest();
+        return grant && grant->waits_for_hand_back;
+      },
+      kPatience))
+      << program.output();
+  EXPECT_TRUE(system_.still());
+  cli({"drive", "hand-back"});
+  EXPECT_TRUE(drives("program")) << program.output();
+}
+
 TEST_F(OnBus, WhatSomebodyPointsOutIsAClick) {
   Process program = written(R"(
 static int clicked(int x, int y, int b) {
