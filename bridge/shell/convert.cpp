@@ -184,7 +184,9 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
   DriveCommand out{{}, to_motion(command), command.contact_speed, {}, trouble(command)};
   out.command.role = role;
   out.command.writer = writer;
-  out.command.source = source_of(command);
+  // Anybody may write any text, or none.
+  out.command.source =
+      command.source.empty() ? "a program without a name" : command.source.substr(0, 255);
   out.command.epoch = command.stamp.epoch;
   out.command.cycle = command.stamp.cycle;
   out.command.number = command.number;

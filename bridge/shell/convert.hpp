@@ -43,12 +43,6 @@ reflector::Motion to_motion(const v1::MotorCommand& command);
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer);
 
-/// A writer's own name, cut to the contract's length: anybody may write any text.
-template <class Sample>
-std::string source_of(const Sample& sample) {
-  return sample.source.substr(0, 255);
-}
-
 v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
                    const reflector::Devices::Reports& reports,
                    const protocol::Information& information, const v1::Stamp& stamp);

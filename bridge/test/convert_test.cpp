@@ -35,6 +35,8 @@ TEST(Convert, AMotorCommandThatIsNoneIsRefused) {
   bad = good;
   bad.source = std::string(100000, 'x');
   EXPECT_LE(to_drive(bad, authority::Role::direct, {7}).command.source.size(), 255U);
+  bad.source.clear();
+  EXPECT_EQ(to_drive(bad, authority::Role::direct, {7}).command.source, "a program without a name");
 }
 
 TEST(Convert, Devices) {
