@@ -108,17 +108,32 @@ bool is_utf8() {
 /// The state of the robot from the bus during the drive, and its display.
 class Watcher {
  public:
-  Watcher(bus::Node& node, const Vec2& goal) : node_(node), goal_(goal) { picture_.set_goal(goal); }
+  /// Each cyclic topic that is read costs a run in lockstep some of its speed: the drawn map and
+  /// the robot's place on it are read for a picture, and the driver for a line.
+  Watcher(bus::Node& node, const Vec2& goal, bool draws, bool lines)
+      : goal_(goal),
+        robots_(node.reader(bus::topics::kRobotState)),
+        description_(node, bus::topics::kRobotDescription) {
+    picture_.set_goal(goal);
+    if (draws || lines)
+      grant_.emplace(node, bus::topics::kGrant);
+    if (draws) {
+      map_.emplace(node, bus::topics::kMap);
+      registration_.emplace(node, bus::topics::kRegistration);
+    }
+  }
 
   /// True when there was a new sample.
   bool poll() {
     if (description_.poll())
       picture_.set_radius(description_->radius);
-    grant_.poll();
-    const bool drawn = map_.poll();
-    if (drawn)
-      walls_ = viewer::plan_of(*map_).walls;
-    if (registration_.poll() || drawn)
+    if (grant_)
+      grant_->poll();
+    if (map_ && map_->poll()) {
+      walls_ = viewer::plan_of(**map_).walls;
+      place_walls();
+    }
+    if (registration_ && registration_->poll())
       place_walls();
     bool any = false;
     for (const auto& sample : robots_.take()) {
@@ -139,11 +154,12 @@ class Watcher {
     std::string line =
         format("%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(), pose.x,
                pose.y, (goal_ - pose.position()).norm(), robot_->velocity);
-    line += (grant_ ? std::string(name_of(grant_->role)) : "?") + " drives";
-    if (grant_ && !latched(*grant_).empty())
-      line += ", " + latched(*grant_);
-    if (grant_ && grant_->guard != v1::GUARD_NONE)
-      line += ", the guard " + std::string(name_of(grant_->guard));
+    const v1::Grant* const grant = grant_ ? grant_->get() : nullptr;
+    line += (grant ? std::string(name_of(grant->role)) : "?") + " drives";
+    if (grant && !latched(*grant).empty())
+      line += ", " + latched(*grant);
+    if (grant && grant->guard != v1::GUARD_NONE)
+      line += ", the guard " + std::string(name_of(grant->guard));
     line += nearest();
     if (status)
       line += "  " + bus::describe(*status);
@@ -163,9 +179,10 @@ class Watcher {
   /// The walls of the map in odom, by the robot's registration.
   void place_walls() {
     std::vector<std::pair<Vec2, Vec2>> walls;
-    if (registration_ && registration_->state == v1::REGISTRATION_TRACKING)
+    const v1::Registration* const registration = registration_->get();
+    if (registration && registration->state == v1::REGISTRATION_TRACKING)
       for (const viewer::Line& wall : walls_) {
-        const Pose odom = lps::from_bus(registration_->odom_in_map);
+        const Pose odom = lps::from_bus(registration->odom_in_map);
         walls.emplace_back(to_frame(odom, wall.from), to_frame(odom, wall.to));
       }
     picture_.set_walls(std::move(walls));
@@ -201,14 +218,13 @@ class Watcher {
                                 : std::string();
   }
 
-  bus::Node& node_;
   Vec2 goal_;
   Picture picture_;
-  bus::Reader<v1::RobotState> robots_ = node_.reader(bus::topics::kRobotState);
-  Newest<v1::RobotDescription> description_{node_, bus::topics::kRobotDescription};
-  Newest<v1::Grant> grant_{node_, bus::topics::kGrant};
-  Newest<v1::FloorMap> map_{node_, bus::topics::kMap};
-  Newest<v1::Registration> registration_{node_, bus::topics::kRegistration};
+  bus::Reader<v1::RobotState> robots_;
+  Newest<v1::RobotDescription> description_;
+  std::optional<Newest<v1::Grant>> grant_;
+  std::optional<Newest<v1::FloorMap>> map_;
+  std::optional<Newest<v1::Registration>> registration_;
   std::vector<viewer::Line> walls_;  ///< of the map
   std::optional<v1::RobotState> robot_;
   std::map<int, Reading> newest_;  ///< by sonar
@@ -315,7 +331,7 @@ class Demo {
   void drive(const bus::Stop& stop) {
     bus::Node node(node_options_);
     Processes processes(node);
-    Watcher watcher(node, Vec2(options_.goal[0], options_.goal[1]));
+    Watcher watcher(node, Vec2(options_.goal[0], options_.goal[1]), screen_.on(), lines());
     bus::GoalClient goals(node, "saphira demo");
     auto permits = node.writer(bus::topics::kStepPermit);
 
