@@ -20,6 +20,22 @@ namespace {
 constexpr const char* kRoomFile = ".room";
 constexpr std::size_t kRoom = 4096;  // [bytes] more than any latches
 
+/// The latches as earlier versions kept them.
+struct Former {
+  bool estopped = false;
+  std::string estop_source;
+  authority::Wait wait = authority::Wait::none;
+};
+
+authority::Latches latches_of(std::string_view text) {
+  try {
+    return restored<authority::Latches>(text);
+  } catch (const std::exception&) {
+    const auto former = restored<Former>(text);
+    return {former.estopped, former.estop_source, former.wait};
+  }
+}
+
 }  // namespace
 
 authority::Latches LatchFile::read() const {
@@ -27,9 +43,11 @@ authority::Latches LatchFile::read() const {
   if (path_.empty() || (!std::filesystem::exists(path_, error) && !error))
     return {};
   try {
-    return restored<authority::Latches>(unsealed(read_bytes(path_), path_));
+    return latches_of(unsealed(read_bytes(path_), path_));
   } catch (const std::exception&) {  // the file exists because of a latch
-    return {true, "unknown: the saved emergency stop cannot be read", authority::Wait::driven};
+    return {.estopped = true,
+            .estop_source = "unknown: the saved emergency stop cannot be read",
+            .wait = authority::Wait::driven};
   }
 }
 

@@ -36,10 +36,12 @@ OtherPrograms::OtherPrograms(bus::Node& node)
 
 void OtherPrograms::take() {
   const double now = BootClock::seconds();
+  const Checked member = node_.identity();
   for (const auto& sample : statuses_.take()) {
     if (sample.data.instance == node_.status().instance)
       continue;
-    if (sample.data.name == node_.status().name)
+    if (sample.data.name == node_.status().name &&
+        may_be_of_a_kind(member, sample.info.sender.get()))
       note(sample.data, sample.info);
     else if (sample.info.disposed)
       audience_.lose(sample.info.writer);

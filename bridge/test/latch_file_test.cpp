@@ -6,6 +6,8 @@
 #include <fstream>
 
 #include "process.hpp"
+#include "saphira/base/archive.hpp"
+#include "saphira/base/durable.hpp"
 #include "small_disk.hpp"
 
 namespace saphira::bridge {
@@ -18,12 +20,38 @@ TEST(LatchFile, IsReadByTheNextOneAndGoneWithTheLatch) {
   const test::TempDir folder;
   const std::string path = folder.path("latched");
   EXPECT_EQ(LatchFile(path).read(), Latches{});
-  const Latches latches{true, "a button", Wait::driven};
+  const Latches latches{.estopped = true, .estop_source = "a button", .wait = Wait::driven};
   EXPECT_EQ(LatchFile(path).write(latches), "");
   EXPECT_EQ(LatchFile(path).read(), latches);
   EXPECT_EQ(LatchFile(path).write({}), "");
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(LatchFile(path).write({}), "") << "twice is no trouble";
+}
+
+TEST(LatchFile, KeepsTheNewestStopAndWhomItHasStopped) {
+  const test::TempDir folder;
+  const std::string path = folder.path("latched");
+  Latches latches{.stop = {7, 8}, .stop_source = "kate"};
+  for (std::uint8_t i = 0; i < 24; ++i)
+    latches.stopped.push_back(
+        {authority::Role::direct, {i, 255, 255, 255, 255, 255, 255, 255, 255}});
+  EXPECT_EQ(LatchFile(path).write(latches), "");
+  EXPECT_EQ(LatchFile(path).read(), latches);
+  EXPECT_LT(std::filesystem::file_size(path), 4096U) << "the room that is kept for it";
+}
+
+struct Former {
+  bool estopped;
+  std::string estop_source;
+  Wait wait;
+};
+
+TEST(LatchFile, AFileOfAnEarlierVersionIsRead) {
+  const test::TempDir folder;
+  const std::string path = folder.path("latched");
+  Former former{false, "", Wait::driven};
+  std::ofstream(path) << sealed(saved(former));
+  EXPECT_EQ(LatchFile(path).read(), Latches{.wait = Wait::driven});
 }
 
 TEST(LatchFile, OneThatCannotBeReadIsAnEmergencyStop) {
@@ -42,8 +70,10 @@ TEST(LatchFile, NoDamageReleasesWhatIsLatched) {
   const test::TempDir folder;
   const std::string path = folder.path("latched");
   for (const Latches& latches :
-       {Latches{true, "a button", Wait::none}, Latches{true, "a button", Wait::driven},
-        Latches{false, "", Wait::driven}, Latches{false, "", Wait::reset}}) {
+       {Latches{.estopped = true, .estop_source = "a button", .wait = Wait::none},
+        Latches{.estopped = true, .estop_source = "a button", .wait = Wait::driven},
+        Latches{.estopped = false, .estop_source = "", .wait = Wait::driven},
+        Latches{.estopped = false, .estop_source = "", .wait = Wait::reset}}) {
     ASSERT_EQ(LatchFile(path).write(latches), "");
     std::string whole;
     std::getline(std::ifstream(path), whole, '\0');
@@ -64,8 +94,9 @@ TEST(LatchFile, NoDamageReleasesWhatIsLatched) {
 }
 
 TEST(LatchFile, SaysWhereItCannotBeWritten) {
-  EXPECT_EQ(LatchFile("").write({true, "a button", Wait::none}), "");
-  const std::string trouble = LatchFile("/nowhere/at/all").write({true, "a button", Wait::none});
+  EXPECT_EQ(LatchFile("").write({.estopped = true, .estop_source = "a button"}), "");
+  const std::string trouble =
+      LatchFile("/nowhere/at/all").write({.estopped = true, .estop_source = "a button"});
   EXPECT_NE(trouble.find("/nowhere/at/all: No such file"), std::string::npos) << trouble;
 }
 
@@ -74,13 +105,13 @@ TEST(LatchFile, AFullDiskKeepsAnEmergencyStop) {
   const test::SmallDisk disk(folder.path());
   if (!disk.works())
     GTEST_SKIP() << "no disk can be made here";
-  const Latches latches{true, "a button", Wait::driven};
+  const Latches latches{.estopped = true, .estop_source = "a button", .wait = Wait::driven};
   LatchFile file(disk.path("latched"));
   file.tend();
   disk.fill();
   EXPECT_EQ(file.write(latches), "") << "its room was kept";
   EXPECT_EQ(LatchFile(disk.path("latched")).read(), latches);
-  const Latches other{true, "another button", Wait::none};
+  const Latches other{.estopped = true, .estop_source = "another button", .wait = Wait::none};
   EXPECT_EQ(file.write(other), "") << "in its place";
   EXPECT_EQ(LatchFile(disk.path("latched")).read(), other);
   EXPECT_EQ(file.write({}), "");

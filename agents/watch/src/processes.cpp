@@ -11,9 +11,18 @@
 #include "saphira/watch/diagnosis.hpp"
 
 namespace saphira::watch {
+namespace {
+
+// Programs come and go for months, and anybody may write a status.
+constexpr std::size_t kMostEntries = 1000;
+
+}  // namespace
 
 void Processes::poll() {
   for (const auto& sample : reader_.take()) {
+    if (entries_.size() >= kMostEntries && !entries_.contains(sample.data.instance))
+      entries_.erase(
+          std::ranges::min_element(entries_, {}, [](const auto& one) { return one.second.came; }));
     Entry& entry = entries_[sample.data.instance];
     entry.gone = sample.info.disposed;
     if (!sample.info.disposed) {

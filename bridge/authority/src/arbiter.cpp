@@ -1,6 +1,8 @@
 #include "saphira/authority/arbiter.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "saphira/base/cycle.hpp"
 #include "saphira/base/enumerators.hpp"
@@ -13,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxRefused = 16;    // the sequence in Grant
 constexpr std::size_t kMaxWriters = 1024;  // bounds the memory that unknown writers can take
+constexpr std::size_t kMaxStopped = 24;    // the same for a file
 constexpr std::size_t kMaxPressed = 64;    // the same for emergency stops
 constexpr double kTick = 1e-9;             // [s] 3 cycles x 0.1 s are not over after 3 cycles
 constexpr double kNever = -1e300;          // [s]
@@ -75,13 +78,14 @@ void Arbiter::refuse(Role role, const std::string& source, const std::string& re
 
 void Arbiter::press(const Command& command) {
   if (!latches_.estopped) {
-    latches_ = {true, command.source, latches_.wait};
-    last_stopper_ = command.source;
+    latches_.estopped = true;
+    latches_.estop_source = last_stopper_ = command.source;
     // Goals that do not hear of it now have to heed it later. The epoch differs over a restart.
     Fnv1a asker;
     for (const std::uint8_t byte : command.writer)
       asker.add(byte);
-    stop_ = {{asker.value(), epoch_ + command.number}, command.source};
+    latches_.stop = {asker.value(), epoch_ + command.number};
+    latches_.stop_source = command.source;
   }
   if (pressed_.size() >= kMaxPressed && !pressed_.contains(command.writer))
     pressed_.erase(std::min_element(pressed_.begin(), pressed_.end(), [](auto& a, auto& b) {
@@ -126,7 +130,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   if (!command.active) {
     said.newest_at = said.drove = kNever;
     said.must_let_go.clear();
-    said.stopped = false;
+    if (std::exchange(said.stopped, false))
+      keep_stopped();
     return release(command, cycle);
   }
   if (command.role == Role::direct && latches_.estopped && said.newest_at == kNever)
@@ -154,9 +159,10 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     p.moved_on = command.received;
   p.held = true;
   p.newest = command;
-  if (said.stopped && command.heeds == stop_.id) {
+  if (said.stopped && command.heeds == latches_.stop) {
     said.must_let_go.clear();
     said.stopped = false;
+    keep_stopped();
   }
   return true;
 }
@@ -228,14 +234,14 @@ void Arbiter::lost(Role role, const WriterId& writer, double now) {
 }
 
 void Arbiter::must_heed(Numbers& said) const {
-  said.must_let_go = "stopped by " + stop_.source;
+  said.must_let_go = "stopped by " + latches_.stop_source;
   said.stopped = true;
 }
 
 std::vector<std::string> Arbiter::stop(const v1::StopId& id, const std::string& source, double now,
                                        std::uint64_t cycle) {
-  stop_ = {id, source};
-  last_stopper_ = source;
+  latches_.stop = id;
+  latches_.stop_source = last_stopper_ = source;
   stop_cycle_ = cycle;
   std::vector<std::string> stopped;
   for (const Role role : kDriving) {
@@ -247,7 +253,28 @@ std::vector<std::string> Arbiter::stop(const v1::StopId& id, const std::string& 
         stopped.push_back(said.source + " (" + name(role) + ")");
     }
   }
+  keep_stopped();
   return stopped;
+}
+
+/// The stopped drivers, for a restart: those heard last.
+void Arbiter::keep_stopped() {
+  std::vector<std::pair<std::uint64_t, Stopped>> all;
+  for (const auto& [key, said] : numbers_)
+    if (said.stopped)
+      all.emplace_back(said.used, Stopped{key.first, key.second});
+  std::ranges::sort(all, std::greater(), [](const auto& one) { return one.first; });
+  all.resize(std::min(all.size(), kMaxStopped));
+  latches_.stopped.clear();
+  for (const auto& [used, one] : all)
+    latches_.stopped.push_back(one);
+}
+
+void Arbiter::restore(const Latches& latches) {
+  latches_ = latches;
+  last_stopper_ = latches.stop_source;
+  for (const Stopped& one : latches.stopped)
+    must_heed(numbers_[{one.role, one.writer}]);
 }
 
 /// The reason why the writer has to let go, or to heed the newest stop, before it drives; empty: it
@@ -256,8 +283,9 @@ std::string Arbiter::why_to_let_go(const Command& command) const {
   const auto said = numbers_.find({command.role, command.writer});
   if (said != numbers_.end() && !said->second.must_let_go.empty())
     return said->second.must_let_go + ": let go first, then drive";
-  if (command.role == Role::behaviors && command.heeds != stop_.id && stop_.id != v1::StopId{})
-    return "stopped by " + stop_.source + ": the goals of before have not ended yet";
+  if (command.role == Role::behaviors && command.heeds != latches_.stop &&
+      latches_.stop != v1::StopId{})
+    return "stopped by " + latches_.stop_source + ": the goals of before have not ended yet";
   return {};
 }
 
@@ -386,7 +414,7 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   Grant grant;
   grant.estopped = latches_.estopped;
   grant.estop_source = latches_.estop_source;
-  grant.stop = stop_.id;
+  grant.stop = latches_.stop;
   grant.stop_source = last_stopper_;
   const std::string why = why_to_stand(role);
   if (role != Role::none && !why.empty()) {

@@ -163,7 +163,7 @@ class Drivers : public saphira::test::LinePlayer {
 };
 
 TEST(Drivers, AreAsWritten) {
-  EXPECT_EQ(saphira::test::play<Drivers>("bridge/authority/test/drivers.txt"), 62);
+  EXPECT_EQ(saphira::test::play<Drivers>("bridge/authority/test/drivers.txt"), 63);
 }
 
 TEST(Arbiter, ThreeCyclesAreWithinALeaseOfThreeCycles) {

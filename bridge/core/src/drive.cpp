@@ -143,26 +143,31 @@ Answer Core::stop(const Request& request, double now) {
   return {AnswerCode::underway, stopped};
 }
 
-void Core::end_stops(AnswerCode code, const std::string& how) {
-  for (const Stopping& each : std::exchange(stops_, {}))
+void Core::end_stops(AnswerCode code, const std::string& how, std::uint64_t age) {
+  std::erase_if(stops_, [&](const Stopping& each) {
+    if (session_.stamp.cycle < each.cycle + age)
+      return false;
     put(LaterAnswer{each.asker, each.number, {code, each.stopped + "; " + how}});
+    return true;
+  });
 }
 
 /// A packet came, and the driver was selected.
 void Core::mind_stops() {
-  if (stops_.empty() || session_.stamp.cycle < stops_.back().cycle + kStopCycles)
+  if (stops_.empty() || session_.stamp.cycle < stops_.front().cycle + kStopCycles)
     return;
   const protocol::Information& shown = reflector_.state().information;
   if (drives(grant_.role) && !stand(told_.setpoints, reflector_.state().pose_in_odom.th))
-    end_stops(AnswerCode::done, grant_.source + " has begun to drive since");
+    end_stops(AnswerCode::done, grant_.source + " has begun to drive since", kStopCycles);
   else if (std::abs(shown.velocity) <= kRestVelocity &&
            std::abs(shown.rotation_velocity) <= kRestRotation)
-    end_stops(AnswerCode::done, "the robot is at rest");
-  else if (session_.stamp.cycle >= stops_.back().cycle + kMostStopCycles)
+    end_stops(AnswerCode::done, "the robot is at rest", kStopCycles);
+  else if (session_.stamp.cycle >= stops_.front().cycle + kMostStopCycles)
     end_stops(AnswerCode::given_up,
               format("the robot is told to stand and still moves after %.0f s, at %.2f m/s: is it "
                      "pushed?",
-                     kCycle * kMostStopCycles, shown.velocity));
+                     kCycle * kMostStopCycles, shown.velocity),
+              kMostStopCycles);
 }
 
 Answer Core::reset_estop(const std::string& source, double now) {

@@ -76,7 +76,7 @@ class Bridge : public saphira::test::LinePlayer {
          }},
         {"restore",
          [this](auto& in) {
-           s_->core.restore({true, rest(in), authority::Wait::none});
+           s_->core.restore({.estopped = true, .estop_source = rest(in)});
            s_->deliver();
          }},
         {"request", [this](auto& in) { request(in); }},
@@ -431,7 +431,7 @@ class Bridge : public saphira::test::LinePlayer {
 };
 
 TEST(Bridge, IsAsWritten) {
-  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 83);
+  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 84);
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ void DirectMotion::set(const Motion& motion, const Pose& pose_in_odom) {
     case Translation::position:
       if (begins)
         target_ = travelled_ + motion.distance;
+      else if (!target_)  // it is over: a velocity came in between
+        setpoints_.velocity = 0.0;
       speed_ = std::abs(motion.velocity) > 0.0 ? std::abs(motion.velocity) : limits_.max_velocity;
       break;
   }
@@ -60,6 +62,8 @@ void DirectMotion::set(const Motion& motion, const Pose& pose_in_odom) {
       if (begins) {
         setpoints_.turn_to_heading = true;
         setpoints_.heading_in_odom = norm2_angle(pose_in_odom.th + motion.heading);
+      } else if (!setpoints_.turn_to_heading) {
+        setpoints_.rotation_velocity = 0.0;
       }
       break;
   }

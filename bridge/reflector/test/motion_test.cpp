@@ -43,6 +43,24 @@ TEST(DirectMotion, ARelativeHeadingIsTakenOnce) {
   EXPECT_NEAR(direct.setpoints().heading_in_odom, norm2_angle(3.5 + kPi / 2), 1e-12);
 }
 
+TEST(DirectMotion, AMoveThatAVelocityHasEndedIsNotThatVelocity) {
+  DirectMotion direct(kPioneer);
+  const Motion move{.translation = Translation::position,
+                    .distance = 1.0,
+                    .move = 1,
+                    .rotation = Rotation::relative_heading,
+                    .heading = 1.0};
+  direct.set(move, {});
+  direct.set({.translation = Translation::velocity,
+              .velocity = 0.3,
+              .rotation = Rotation::velocity,
+              .rotation_velocity = 0.5},
+             {});
+  direct.set(move, {});
+  EXPECT_EQ(direct.setpoints().velocity, 0.0);
+  EXPECT_EQ(direct.setpoints().rotation_velocity, 0.0);
+}
+
 TEST(DirectMotion, AMoveThatIsOverStaysSoWhoeverElseDrives) {
   DirectMotion direct(kPioneer);
   Motion mine{.translation = Translation::position, .distance = 1.0, .move = 5, .driver = 1};

@@ -63,7 +63,7 @@ void Agent::poll() {
     node_.status().state = v1::SERVICE_RUNNING;
   answering_ = true;
   for (const auto& sample : requests_.take())
-    if (!sample.info.disposed && server_.hear(sample.data))
+    if (!sample.info.disposed && server_.hear(sample.data, sample.info.sender.get()))
       answer(sample.data, begin(sample.data));
   answering_ = false;
 }

@@ -437,6 +437,8 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
   // get_key_value() is not supported: this map alone gives the key of a withdrawn instance.
   void remember(const fdds::SampleInfo& sample, const SampleInfo& info) {
     auto found = last_.find(sample.instance_handle);
+    if (found == last_.end() && last_.size() >= kMostInstances)
+      forget_oldest(info.writer);
     if (found == last_.end())
       found = last_.emplace(sample.instance_handle, Last{{type_.create(), type_.destroy}, {}, {}})
                   .first;
@@ -446,6 +448,12 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     last.identity = sample.sample_identity;
     last.written = sample.source_timestamp.to_ns();
   }
+  /// Of this writer, where it has any, so that none crowds out the others.
+  void forget_oldest(const WriterId& writer) {
+    last_.erase(std::ranges::min_element(last_, {}, [&](const auto& one) {
+      return std::pair(one.second.info.writer != writer, one.second.written);
+    }));
+  }
   /// [s]
   static double age_of(std::int64_t written) {
     return 1e-9 * static_cast<double>(unix_nanoseconds() - written);
@@ -453,6 +461,8 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
 
   // Writers come and go for months. A forgotten writer costs at most a sample that comes twice.
   static constexpr std::size_t kMostWriters = 1000;
+  // Without its last sample an instance that is withdrawn is not told.
+  static constexpr std::size_t kMostInstances = 2000;
 
   Holder scratch_;
   std::map<rtps::InstanceHandle_t, Last> last_;

@@ -42,10 +42,11 @@ bool Namesakes::poll() {
   v1::ServiceStatus& own = self.node.status();
   for (const WriterId& gone : self.statuses.take_lost())
     self.neighbours.lose(gone);
+  const Checked member = self.node.identity();
   self.statuses.visit([&](const v1::ServiceStatus& other, const SampleInfo& info) {
     if (info.disposed)
       self.neighbours.lose(info.writer);
-    else if (other.instance != own.instance)
+    else if (other.instance != own.instance && may_be_of_a_kind(member, info.sender.get()))
       self.neighbours.update(info.writer, other, Clock::now());
   });
   if (const auto other = self.neighbours.serves_instead(own)) {

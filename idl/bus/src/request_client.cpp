@@ -144,15 +144,16 @@ bool RequestClient::turn(double now) {
 }
 
 /// A good end of the request, straight from the agent that carried it out. Any other answer is for
-/// the router to judge: it may ask another agent, or wait for more answers.
+/// the router to judge: it may ask another agent, or wait for more answers. On a secured bus the
+/// router alone knows who speaks for an agent.
 std::optional<v1::Answer> RequestClient::take_direct(const v1::Request& request) {
   if (!direct_)
     return std::nullopt;
   std::optional<v1::Answer> end;
   for (auto& sample : direct_->take()) {
     v1::Answer& answer = sample.data;
-    if (sample.info.disposed || answer.asker != request.asker || answer.number != request.number ||
-        !ended(answer.code) || !well(answer.code))
+    if (sample.info.disposed || sample.info.sender || answer.asker != request.asker ||
+        answer.number != request.number || !ended(answer.code) || !well(answer.code))
       continue;
     answer.service = answer.service.substr(answer.service.find('/') + 1);  // of agent_address()
     end = std::move(answer);

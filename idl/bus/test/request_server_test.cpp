@@ -89,6 +89,28 @@ TEST_F(RequestServers, AWithdrawalStopsWhatIsUnderWayAndEndsWhatIsNotBegun) {
   EXPECT_EQ(begun_, Numbers{1});
 }
 
+TEST_F(RequestServers, AMemberWithTheNumbersOfAnotherForestallsAndWithdrawsNothing) {
+  const Identity kate{"kate", "operator"};
+  const Identity mallory{"mallory", "observer"};
+  std::vector<std::string> stops;
+  servo_.when_withdrawn([&](const v1::Request&) { stops.emplace_back("stop"); });
+  const v1::Request request{.asker = 9, .number = 1, .functor = "turn"};
+  const v1::Request withdrawal{.asker = 9, .number = 1, .functor = kWithdraw};
+  EXPECT_FALSE(servo_.hear(withdrawal, &mallory));
+  EXPECT_EQ(told(), Texts{"withdrawn before it was begun"});
+  EXPECT_TRUE(servo_.hear(request, &kate));
+  EXPECT_FALSE(servo_.hear(withdrawal, &mallory));
+  EXPECT_TRUE(say(servo_, 1, v1::ANSWER_UNDERWAY, "turns"));
+  EXPECT_FALSE(servo_.hear(withdrawal, &mallory));
+  EXPECT_EQ(told(), Texts{"turns"});
+  EXPECT_TRUE(stops.empty());
+  EXPECT_FALSE(servo_.hear(withdrawal, &kate));
+  EXPECT_EQ(stops.size(), 1U);
+  EXPECT_TRUE(say(servo_, 1, v1::ANSWER_DONE, "turned"));
+  EXPECT_FALSE(servo_.hear(request, &kate));
+  EXPECT_EQ(told(), (Texts{"turns", "turned", "turned"}));
+}
+
 TEST_F(RequestServers, TheServerIsMeantByItsNameAndWithoutARouterByNone) {
   RequestServer clerk = server("1f/clerk", true);
   for (const char* service : {"", "bridge", "vision", "1f/clerk", "1f/clerk"}) {

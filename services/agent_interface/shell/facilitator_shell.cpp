@@ -55,11 +55,13 @@ FacilitatorShell::FacilitatorShell(bus::Node& node, double now, std::string memo
 void FacilitatorShell::take_agents() {
   for (const auto& sample : agents_.take()) {
     if (sample.info.disposed) {
-      facilitator_.leave(sample.data.id);
+      facilitator_.leave(sample.data.id, bus::asker_of(sample.info));
       continue;
     }
-    note(agents_of_, sample.info.writer, std::uint64_t{sample.data.id});
-    facilitator_.announce(from_bus(sample.data));
+    AgentInfo agent = from_bus(sample.data);
+    agent.member = bus::asker_of(sample.info);
+    if (facilitator_.announce(agent))
+      note(agents_of_, sample.info.writer, agent.id);
   }
   for (const bus::WriterId& writer : agents_.take_lost()) {
     const auto [begin, end] = agents_of_.equal_range(writer);
@@ -140,7 +142,7 @@ void FacilitatorShell::step(double now) {
   for (const auto& sample : answers_.take())
     if (!sample.info.disposed)
       facilitator_.hear(sample.data.service, sample.data.asker, sample.data.number,
-                        saphira::from_bus(sample.data), now);
+                        saphira::from_bus(sample.data), now, bus::asker_of(sample.info));
   // The bus repeats older events to a new reader: triggers fired on them before.
   for (const auto& sample : events_.take())
     if (!sample.info.disposed && sample.info.age <= now - begun_)

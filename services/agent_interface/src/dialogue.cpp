@@ -475,18 +475,33 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
 }
 
 void Dialogue::take_in(const Utterance& utterance, const Situation& situation, Outputs& out) {
-  // A living writer repeats its earlier sentences to a new reader.
-  if (situation.now > 0.0 && utterance.time > 0.0 && situation.now - utterance.time > kOld) {
-    out.note = "not acted on, since it is older than a minute: " + quoted(utterance.text);
-    return;
-  }
   if (utterance.id != UtteranceId{}) {
-    if (std::find(heard_.begin(), heard_.end(), utterance.id) != heard_.end())
+    // Ids are public: nobody else uses up a person's next ones.
+    const std::string person = utterance.person ? utterance.person->text() : std::string();
+    const auto known = std::ranges::find(heard_, utterance.id);
+    const auto by = heard_by_.find(utterance.id);
+    if (known != heard_.end() && (by == heard_by_.end() || by->second == person))
       return;
-    heard_.push_back(utterance.id);
-    if (heard_.size() > kHeard)
+    if (known == heard_.end())
+      heard_.push_back(utterance.id);
+    heard_by_[utterance.id] = person;
+    if (heard_.size() > kHeard) {
+      heard_by_.erase(heard_.front());
       heard_.erase(heard_.begin());
+    }
     out.changed = true;
+  }
+  // It waited somewhere, or the clock of its machine differs. A stop counts all the same.
+  const double age = utterance.time > 0.0 ? situation.now - utterance.time : 0.0;
+  const auto is_stop = [](const std::vector<Meaning>& meanings) {
+    return meanings.size() == 1 && meanings.front().functor == "stop";
+  };
+  if (situation.now > 0.0 && age > kOld && !is_stop(grammar_.understand(utterance.text).meanings)) {
+    out.note = "not acted on, since it is older than a minute: " + quoted(utterance.text);
+    refuse(utterance,
+           "by our clocks that was said more than a minute ago: say it again, or set the clocks",
+           out);
+    return;
   }
   tasks_.heed(front(situation));
   unclear_ = {};

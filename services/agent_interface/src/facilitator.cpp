@@ -50,8 +50,23 @@ const Capability* Facilitator::capability(std::uint64_t agent, const std::string
   return nullptr;
 }
 
-void Facilitator::announce(const AgentInfo& agent) {
-  const bool known = agents_.contains(agent.id);
+/// True where the member may speak for the agent: whoever has announced it.
+bool Facilitator::may_speak_for(const AgentInfo& agent, const Checked& by) {
+  if (!agent.member || !by || agent.member->name == by->name)
+    return true;
+  const std::string what = "to speak for agent " + agent.name + " of " + agent.member->text();
+  if (strangers_.size() < kStrangers && strangers_.insert(by->text() + what).second) {
+    out_.warnings.push_back(by->text() + " is refused " + what);
+    out_.audit.push_back({.act = v1::AUDIT_REFUSED, .who = by->text(), .text = what});
+  }
+  return false;
+}
+
+bool Facilitator::announce(const AgentInfo& agent) {
+  const auto found = agents_.find(agent.id);
+  const bool known = found != agents_.end();
+  if (known && !may_speak_for(found->second, agent.member))
+    return false;
   agents_[agent.id] = agent;
   if (!known)
     out_.notes.push_back("agent " + agent.name + " came");
@@ -61,11 +76,12 @@ void Facilitator::announce(const AgentInfo& agent) {
       waiting.push_back(id);
   for (const Id& id : waiting)
     match(id, now_);
+  return true;
 }
 
-void Facilitator::leave(std::uint64_t agent) {
+void Facilitator::leave(std::uint64_t agent, const Checked& by) {
   const auto found = agents_.find(agent);
-  if (found == agents_.end())
+  if (found == agents_.end() || !may_speak_for(found->second, by))
     return;
   const std::string name = found->second.name;
   agents_.erase(found);
@@ -468,7 +484,7 @@ void Facilitator::advance(const Id& id, double now) {
 }
 
 void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
-                       const Answer& given, double now) {
+                       const Answer& given, double now, const Checked& by) {
   now_ = now;
   const Id id{asker, number};
   const auto found = open_.find(id);
@@ -488,6 +504,8 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
                               "the request, such as 1f3a/calendar");
     return;
   }
+  if (!may_speak_for(agents_.at(asked->agent), by))
+    return;
   asked->heard = true;
   // An agent that knows no withdrawals does the action to its end.
   if (open.withdrawn && given.code == AnswerCode::unknown_functor)

@@ -16,6 +16,17 @@ TEST_F(DialogueTest, AnUtteranceThatComesTwiceIsHeardOnce) {
   EXPECT_TRUE(restarted.hear(utterance, situation).goals.empty());
 }
 
+TEST_F(DialogueTest, NobodyUsesUpTheIdsOfAnother) {
+  const auto hear = [&](const char* person, const char* text) {
+    return dialogue.hear(
+        {.id = {7, 1}, .speaker = person, .text = text, .person = Identity{person, "agent"}},
+        situation);
+  };
+  EXPECT_EQ(hear("mallory", "flakey go forward").goals.size(), 1u);
+  EXPECT_EQ(hear("kate", "flakey stop").goals.size(), 1u);
+  EXPECT_TRUE(hear("kate", "flakey stop").goals.empty());
+}
+
 TEST_F(DialogueTest, TheExamplesOfWhatItCanDoAreUnderstood) {
   std::string examples = said("Flakey, what can you do?");
   const std::string begin = "You can say, for example: ";

@@ -112,7 +112,7 @@ class Round {
                "a place beside another",
                {text_parameter("place", "of the map"),
                 optional(text_parameter("other", "beside it"))}}}};
-    facilitator_.announce({id, name, "address of " + name, all});
+    facilitator_.announce({id, name, "address of " + name, all, member_});
   }
   /// "ask 5": where karen is; "ask 5 FUNCTOR ARGUMENTS" with "@within=2", "@of=robot",
   /// "@by=anna/agent".
@@ -207,6 +207,7 @@ class Round {
 
   std::uint64_t self_ = 9;
   Facilitator facilitator_{self_};
+  Checked member_;
   double now_ = 100.0;
   int fired_ = 0;
   Request asked_;       ///< newest
@@ -216,8 +217,10 @@ class Round {
 
   using Event = std::function<void(std::istringstream&)>;
   const std::map<std::string, Event> events_{
+      {"member",  // who writes what follows
+       [this](auto& in) { member_ = identity_of(read<std::string>(in)); }},
       {"agent", [this](auto& in) { announce(in); }},
-      {"leaves", [this](auto& in) { facilitator_.leave(read<std::uint64_t>(in)); }},
+      {"leaves", [this](auto& in) { facilitator_.leave(read<std::uint64_t>(in), member_); }},
       {"ask", [this](auto& in) { ask(in); }},
       {"answer",  // to the newest request
        [this](auto& in) {
@@ -227,7 +230,7 @@ class Round {
        [this](auto& in) {
          const auto name = read<std::string>(in);
          const auto number = read<std::uint64_t>(in);
-         facilitator_.hear("address of " + name, 1, number, answer_of(in), now_);
+         facilitator_.hear("address of " + name, 1, number, answer_of(in), now_, member_);
        }},
       {"stranger",  // an answer from an address that no agent has
        [this](auto& in) {
@@ -268,7 +271,7 @@ class Round {
 };
 
 TEST(Requests, AreAsWritten) {
-  EXPECT_EQ(test::play<Round>("services/agent_interface/test/requests.txt"), 43);
+  EXPECT_EQ(test::play<Round>("services/agent_interface/test/requests.txt"), 44);
 }
 
 }  // namespace

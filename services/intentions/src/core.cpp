@@ -124,8 +124,13 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
 }
 
 /// Registration lets the map grow for as long as an intention wants it: the request ends by itself
-/// where this service is gone. Switched off by another, it stays off.
+/// where this service is gone. Switched off by another, it stays off; a registration that was gone
+/// is asked anew.
 void Core::ask_for_features(const intentions::Inputs& now, std::vector<Request>& requests) {
+  if (!now.around.registration.state) {
+    adds_features_ = false;
+    return;
+  }
   const Belief* const belief = executor_.beliefs().stored(kGrowsMap);
   const bool wanted = belief != nullptr && belief->value.truthy();
   const bool again =
@@ -140,8 +145,8 @@ void Core::ask_for_features(const intentions::Inputs& now, std::vector<Request>&
 /// tell people from walls that it lacks.
 std::vector<Edge> Core::edges_near(const intentions::Inputs& now) {
   std::vector<Edge> edges;
-  if (lines_ == nullptr || adds_features_ || !now.robot.odom_in_map ||
-      now.around.registration.state != v1::REGISTRATION_TRACKING)
+  if (lines_ == nullptr || adds_features_ || now.around.registration.adds_features ||
+      !now.robot.odom_in_map || now.around.registration.state != v1::REGISTRATION_TRACKING)
     return edges;
   const Vec2 robot_in_map = compose(*now.robot.odom_in_map, now.robot.pose_in_odom).position();
   if (near_.empty() || (near_of_ - robot_in_map).norm() > kOnward) {

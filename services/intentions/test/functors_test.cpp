@@ -93,6 +93,53 @@ TEST(GoTo, MovesAboutUntilWhatIsHeardConfirmsWhereItIs) {
   EXPECT_EQ(never.status(1).code, v1::CODE_NO_POSITION);
 }
 
+TEST(GoTo, AfterAPauseInItsTurnItIsAtItsPointAgainBeforeItTurns) {
+  Bench bench;
+  bench.begin(1, "go_to", {point("position", {2.0, 0.0, 0.0}), number("facing", 3.0)});
+  for (int i = 0; i < 300 && !bench.status(1).step.starts_with("turning"); ++i)
+    bench.step();
+  bench.begin(2, "go_to", {point("position", {4.0, 1.0, 0.0})}, 5);
+  bench.run(2, bench.cycle + 600);
+  ASSERT_EQ(bench.state(2), v1::GOAL_SUCCEEDED);
+  bench.run(1, bench.cycle + 600, bench.state(1));
+  bench.run(1, bench.cycle + 600);
+  EXPECT_EQ(bench.state(1), v1::GOAL_SUCCEEDED);
+  EXPECT_LE((bench.world.robot.pose_in_odom.position() - Vec2(2.0, 0.0)).norm(), 0.2);
+}
+
+TEST(GoTo, AChangeInItsTurnEndsTheTurn) {
+  Bench bench;
+  bench.begin(1, "go_to", {point("position", {2.0, 0.0, 0.0}), number("facing", 3.0)});
+  for (int i = 0; i < 300 && !bench.status(1).step.starts_with("turning"); ++i)
+    bench.step();
+  bench.begin(1, "go_to", {point("position", {4.0, 0.0, 0.0})});
+  std::vector<std::string> names = schemas(bench.out.behaviors);
+  std::ranges::sort(names);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"AvoidCollision/0", "GoToPos/2", "KeepOff/1", "Stop/3"}));
+}
+
+TEST(Drive, AJumpOfDeadReckoningIsNoWay) {
+  Bench bench;
+  bench.begin(1, "drive", {number("speed", 0.2), number("distance", 10.0)});
+  bench.step(10);
+  ++bench.world.robot.odom;
+  bench.world.robot.pose_in_odom.x += 30.0;
+  bench.step(10);
+  EXPECT_EQ(bench.state(1), v1::GOAL_UNDERWAY) << bench.status(1).reason;
+}
+
+TEST(Drive, WhereNothingIsDrivenTheDeadlineIsNoSuccess) {
+  Bench bench;
+  Goal goal = Bench::goal(1, "drive", {number("speed", 0.2)});
+  goal.deadline = 3.0;
+  bench.world.held = true;
+  bench.write(goal);
+  bench.step(50);
+  EXPECT_EQ(bench.state(1), v1::GOAL_FAILED);
+  EXPECT_EQ(bench.status(1).code, v1::CODE_DEADLINE);
+}
+
 // Without AvoidCollision the others would drive on.
 TEST(Functors, FailWhereOneOfTheirBehaviorsCannotBeMade) {
   for (const char* const missing : {"AvoidCollision", "ConstantVelocity", "Stop"}) {

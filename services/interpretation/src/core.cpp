@@ -39,12 +39,13 @@ void Core::make(const std::vector<lps::SonarMount>& sonars) {
 }
 
 void Core::note_tiles(const Output& output, std::uint64_t cycle, Outputs& outputs) {
-  changed_.insert(output.changed_tiles.begin(), output.changed_tiles.end());
   for (const TileKey& key : output.dropped_tiles) {
     changed_.erase(key);
     if (told_.erase(key) > 0)
       outputs.gone.push_back(key);
   }
+  // A tile may be left behind and begun anew in the same cycle.
+  changed_.insert(output.changed_tiles.begin(), output.changed_tiles.end());
   if (cycle % kGridCycles != 0)
     return;
   outputs.tiles.assign(changed_.begin(), changed_.end());

@@ -55,6 +55,15 @@ TEST_F(CoreTest, WhatWasSeenInAnotherFrameIsGone) {
   EXPECT_TRUE(step().output->percepts.empty());
 }
 
+TEST_F(CoreTest, ATileOfANewFrameIsToldThoughItHasTheKeyOfAnOldOne) {
+  drive(100);
+  inputs_.new_frame = true;
+  inputs_.pose_in_odom = {};
+  drive(20);
+  const std::vector<TileKey> tiles = core_.grid().tiles();
+  EXPECT_EQ(told_, std::set<TileKey>(tiles.begin(), tiles.end()));
+}
+
 TEST_F(CoreTest, AnotherEpochTakesItsTilesAwayAndItsIdsGoOn) {
   drive(100);
   const auto newest = [](const Core::Outputs& outputs) {

@@ -50,6 +50,21 @@ TEST(Identity, NobodyElseSpeaksForPersons) {
   EXPECT_EQ(acting_for(stranger, kOperator), stranger);
 }
 
+TEST(Identity, AStatusOfAnotherRoleIsOfNoNamesake) {
+  const Identity services{"flakey", "services"};
+  const Identity bridge{"flakey", "bridge"};
+  const Identity robot{"flakey", "robot"};
+  const Identity recorder{"box", "recorder"};
+  EXPECT_TRUE(may_be_of_a_kind(services, &services));
+  EXPECT_TRUE(may_be_of_a_kind(services, &robot));
+  EXPECT_TRUE(may_be_of_a_kind(robot, &bridge));
+  EXPECT_TRUE(may_be_of_a_kind(kAgent, &kAgent));
+  EXPECT_TRUE(may_be_of_a_kind(std::nullopt, nullptr)) << "an open bus";
+  for (const Identity* other : {&recorder, &kOperator, &bridge})
+    EXPECT_FALSE(may_be_of_a_kind(services, other)) << other->role;
+  EXPECT_FALSE(may_be_of_a_kind(robot, &recorder));
+}
+
 TEST(Identity, StandsBeforeWhatSomebodyCallsItself) {
   EXPECT_EQ(named("saphira goal", kOperator), "karen (operator), saphira goal");
   EXPECT_EQ(named("", kOperator), "karen (operator)");

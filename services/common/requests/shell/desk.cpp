@@ -32,7 +32,7 @@ std::vector<Request> Desk::take(const v1::Stamp& now) {
   const bool asks = reader_.matched() > 0;
   if (std::exchange(asked_, asks) || asks)
     for (const auto& sample : reader_.take())
-      if (!sample.info.disposed && server_.hear(sample.data))
+      if (!sample.info.disposed && server_.hear(sample.data, sample.info.sender.get()))
         waiting_.push_back(from_bus(sample));
   const bool lockstep = node_.options().lockstep;
   const auto later =

@@ -285,8 +285,11 @@ class GoTo : public Activity {
     motion_.note(self.robot());
     if (self.state() == IntentionState::kInterrupted)
       return;
+    if (begins(self))
+      turn_.reset();  // the robot may be elsewhere by now
     if (turn_)
       return turn_->step(self);
+    self.drop_behavior("TurnTo");
     const std::optional<Pose> target = in_odom(target_, self.robot());
     if (!target) {
       wait_for_position(self, waiting_since_, watchdog_.patience());
@@ -460,7 +463,8 @@ class Drive : public Activity {
     if (self.state() == IntentionState::kInterrupted)
       return;
     const Pose& pose = self.robot().pose_in_odom;
-    if (begins(self) || restart_) {
+    const bool same_odom = std::exchange(odom_, self.robot().odom) == self.robot().odom;
+    if (begins(self) || restart_ || !same_odom) {
       restart_ = false;
       keep_out_.restart();
       anchor_ = pose;
@@ -495,13 +499,15 @@ class Drive : public Activity {
 
   std::string at_deadline(const Robot& robot) override {
     static_cast<void>(robot);
-    return distance_ > 0.0 ? std::string() : format("drove %.2f m until the deadline", path_);
+    return distance_ > 0.0 || path_ < kLeastRadius
+               ? std::string()
+               : format("drove %.2f m until the deadline", path_);
   }
 
   void archive(Archive& a) override {
     a("speed", speed_)("distance", distance_)("patience", patience_)("restart", restart_)(
         "keep_out", keep_out_)("motion", motion_)("anchor", anchor_)("anchored", anchored_)(
-        "last", last_)("path", path_);
+        "last", last_)("path", path_)("odom", odom_);
   }
 
  private:
@@ -526,7 +532,8 @@ class Drive : public Activity {
   Pose anchor_;
   Ticks anchored_ = 0;
   Pose last_;
-  double path_ = 0.0;  ///< [m]
+  double path_ = 0.0;       ///< [m]
+  std::uint64_t odom_ = 0;  ///< of `last_`
 };
 
 class Halt : public Activity {

@@ -13,13 +13,9 @@
 
 namespace saphira::authority {
 
-/// The roles that may drive, strongest first.
-enum class Role { none, estop, teleop, direct, behaviors };
 inline constexpr std::array kRoles{Role::estop, Role::teleop, Role::direct, Role::behaviors};
 
 const char* name(Role role);
-
-using WriterId = std::array<std::uint8_t, 16>;
 
 /// The part of a motor command that arbitration needs. Times are seconds of the caller's clock: the
 /// steady clock live, cycles x 0.1 s in lockstep.
@@ -93,7 +89,8 @@ struct Grant {
 /// the stop. A command of the behaviors has to heed it: the release of a cycle says nothing about
 /// the intent of the next one.
 ///
-/// Two states are latched, over connections and, with latches() and restore(), over a restart:
+/// Three states are latched, over connections and, with latches() and restore(), over a restart:
+/// - A stop, as above.
 /// - An emergency stop: nobody drives until it is reset. A driver that was active before the reset
 ///   does not drive after it: a person or a direct driver has to let go first. Autonomy must have
 ///   come to rest by itself, as it does when its goals end, and no program may have tried to drive
@@ -128,7 +125,7 @@ class Arbiter {
   /// where it is released.
   std::string reset(const std::string& source, double now);
   const Latches& latches() const { return latches_; }
-  void restore(const Latches& latches) { latches_ = latches; }
+  void restore(const Latches& latches);
 
   /// The writer that drives now.
   Grant decide(double now, std::uint64_t cycle);
@@ -141,11 +138,10 @@ class Arbiter {
   template <class Archive>
   void archive(Archive& a) {
     a("epoch", epoch_)("deaf_cycle", deaf_cycle_)("deaf_until", deaf_until_)("deaf_why", deaf_why_)(
-        "players", players_)("numbers", numbers_)("offers", offers_)("stop", stop_.id)(
-        "stop_source", stop_.source)("last_stopper", last_stopper_)("stop_cycle", stop_cycle_)(
-        "latches", latches_)("pressed", pressed_)("began_pressed", began_pressed_)(
-        "person", person_)("quiet_since", quiet_since_)("quiet_heard", quiet_heard_)(
-        "refused", refused_)("refused_count", refused_count_);
+        "players", players_)("numbers", numbers_)("offers", offers_)("last_stopper", last_stopper_)(
+        "stop_cycle", stop_cycle_)("latches", latches_)("pressed", pressed_)(
+        "began_pressed", began_pressed_)("person", person_)("quiet_since", quiet_since_)(
+        "quiet_heard", quiet_heard_)("refused", refused_)("refused_count", refused_count_);
   }
 
  private:
@@ -190,17 +186,14 @@ class Arbiter {
   };
 
   void must_heed(Numbers& said) const;
+  void keep_stopped();
 
   /// Newest number by role and writer. Kept over connections, so that a repeated old command never
   /// drives.
   std::map<std::pair<Role, WriterId>, Numbers> numbers_;
   std::uint64_t offers_ = 0;
 
-  struct {
-    v1::StopId id;
-    std::string source;
-  } stop_;                        ///< the newest
-  std::string last_stopper_;      ///< of these stops and emergency stops
+  std::string last_stopper_;      ///< of a stop or an emergency stop
   std::uint64_t stop_cycle_ = 0;  ///< of this epoch; a command that answers it was before the stop
 
   Latches latches_;

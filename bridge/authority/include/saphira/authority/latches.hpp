@@ -1,6 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <vector>
+
+#include "saphira/idl/common.hpp"
 
 namespace saphira::authority {
 
@@ -11,11 +16,27 @@ enum class Wait {
   reset,   ///< an emergency stop was reset while autonomy asked to drive, or was not heard
 };
 
-/// Stops that hold until a person releases them, whatever happens to the programs.
+/// A writer on the bus, for ever.
+using WriterId = std::array<std::uint8_t, 16>;
+
+/// The roles that may drive, strongest first.
+enum class Role { none, estop, teleop, direct, behaviors };
+
+/// A driver that the newest stop has stopped, and that has not let go since.
+struct Stopped {
+  Role role = Role::none;
+  WriterId writer{};
+  bool operator==(const Stopped&) const = default;
+};
+
+/// Stops that hold whatever happens to the programs.
 struct Latches {
-  bool estopped = false;
-  std::string estop_source;  ///< which program pressed it
-  Wait wait = Wait::none;
+  bool estopped = false;       ///< until a person releases it
+  std::string estop_source{};  ///< which program pressed it
+  Wait wait = Wait::none;      ///< until a person hands the robot back
+  v1::StopId stop{};           ///< the newest, which goals of before have to heed
+  std::string stop_source{};
+  std::vector<Stopped> stopped{};  ///< the newest, at most 24
   bool operator==(const Latches&) const = default;
 };
 

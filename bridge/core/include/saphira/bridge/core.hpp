@@ -213,7 +213,8 @@ class Core {
   void publish_grant();
   void keep_latches(double now);
   void mind_stops();
-  void end_stops(AnswerCode code, const std::string& how);
+  /// Ends the stops of at least that age [cycles].
+  void end_stops(AnswerCode code, const std::string& how, std::uint64_t age = 0);
 
   void mind_keeper(double now, const Surroundings& around);
   bool motors_off() const;

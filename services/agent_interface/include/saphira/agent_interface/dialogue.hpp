@@ -358,11 +358,12 @@ class Dialogue {
   Tasks tasks_;
   std::map<std::uint64_t, double> without_status_;  ///< goals, since when [s]
   std::optional<Spot> began_;                       ///< the newest task, there
-  std::vector<Task> wanted_;        ///< the tasks of the sentence that is being heard
-  CycleRef said_{};                 ///< of an activity's newest message
-  CycleRef before_{};               ///< the same, before a restart
-  std::vector<UtteranceId> heard_;  ///< the newest, so that none is carried out twice
-  std::vector<Find> found_;         ///< the newest
+  std::vector<Task> wanted_;                     ///< the tasks of the sentence that is being heard
+  CycleRef said_{};                              ///< of an activity's newest message
+  CycleRef before_{};                            ///< the same, before a restart
+  std::vector<UtteranceId> heard_;               ///< the newest, so that none is carried out twice
+  std::map<UtteranceId, std::string> heard_by_;  ///< the checked persons, since the start
+  std::vector<Find> found_;                      ///< the newest
 };
 
 /// The robot's place in the map's words: a room, otherwise a corridor; empty: neither.

@@ -26,6 +26,7 @@ struct AgentInfo {
   std::string name;
   std::string address;  ///< Request.service of this agent
   std::vector<Capability> capabilities;
+  Checked member{};  ///< who announces it, and alone may speak for it [none on an open bus]
 };
 
 /// The functor that the facilitator answers itself: the result `live` has the ids of the triggers
@@ -63,9 +64,10 @@ class Facilitator {
   /// have not announced themselves yet; a request that none can answer waits for them.
   explicit Facilitator(std::uint64_t self, double known = 0.0) : self_(self), known_(known) {}
 
-  void announce(const AgentInfo& agent);
+  /// False, and a warning: the agent is another member's.
+  bool announce(const AgentInfo& agent);
   /// The agent's open requests go to another agent, or are answered with the reason.
-  void leave(std::uint64_t agent);
+  void leave(std::uint64_t agent, const Checked& by = {});
 
   /// A known trigger is set anew where it has changed; otherwise its firings still count. One with
   /// a period below 0.1 s is not set, and a note says so.
@@ -90,7 +92,7 @@ class Facilitator {
   void withdraw(std::uint64_t asker, std::uint64_t number, const std::string& why = {});
   /// The answer of the agent at an address.
   void hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
-            const Answer& answer, double now);
+            const Answer& answer, double now, const Checked& by = {});
 
   struct Outputs {
     std::vector<Request> requests;  ///< to agents, by their address
@@ -169,6 +171,7 @@ class Facilitator {
   void begin(const Request& request, std::optional<Id> trigger, double now);
   void list_triggers(const Request& request);
   void deny(const std::string& who, const std::string& what);
+  bool may_speak_for(const AgentInfo& agent, const Checked& by);
   void stop_action(const Id& trigger, const std::string& why);
   std::string missing_for(const Trigger& trigger) const;
   std::optional<Answer> take_apart(Open& open) const;

@@ -32,6 +32,18 @@ inline bool is_named(const std::string& known, const std::string& says) {
   return known == says || (known.size() > says.size() + 2 && known.ends_with(", " + says));
 }
 
+/// True where a program of `other` may be another one of the kind of `self`: of its role, or one of
+/// them is bridge and services in one. Any member may write a status with any name. Where `self` is
+/// checked, one that is not yet checked is none.
+inline bool may_be_of_a_kind(const Checked& self, const Identity* other) {
+  const auto of_robot = [](const std::string& role) {
+    return role == "bridge" || role == "services" || role == "robot";
+  };
+  return !self || (other && (self->role == other->role ||
+                             (of_robot(self->role) && of_robot(other->role) &&
+                              (self->role == "robot" || other->role == "robot"))));
+}
+
 /// True where `who` may change, replace or end what `owner` has asked for: the owner and operators.
 /// A stop is anybody's, and no matter of this.
 inline bool may_end(const Checked& who, const Checked& owner) {
