@@ -20,8 +20,10 @@ std::int64_t played(std::int64_t step_ns) {
   return step_ns < 0 || step_ns > kLongestGap ? kShortGap : step_ns;
 }
 
+/// Goals move a robot as commands do.
 bool is_command(const bus::TopicEntry& topic) {
-  return topic.qos == "motion" || topic.qos == "command";
+  return topic.qos == "motion" || topic.qos == "command" ||
+         std::string_view(topic.name) == bus::topics::kGoals.name;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "recorder.hpp"
 #include "saphira/base/robot_name.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/introspect.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace {
@@ -46,6 +47,15 @@ bool has_robot(bus::Node& node, const bus::Stop& stop) {
   while (!stop.requested() && Clock::now() - began < kPollPeriod && states.matched() == 0)
     node.wait(kTurn, &stop);
   return states.matched() > 0;
+}
+
+/// A robot of the replay's name has come since, or its network.
+bool has_come(bus::Node& node) {
+  return std::ranges::any_of(bus::found_programs(node), [&](const bus::ProgramEntry& program) {
+    return program.robot == node.options().robot && !program.silent &&
+           (program.kind() == "bridge" || program.kind() == "intentions" ||
+            program.kind() == "all");
+  });
 }
 
 int replay(bus::NodeOptions node_options, const Options& options, const bus::Stop& stop) {
@@ -90,6 +100,11 @@ int replay(bus::NodeOptions node_options, const Options& options, const bus::Sto
   bool goes_on = true;
   while (!stop.requested() && goes_on) {
     node.publish_status();
+    if (has_come(node)) {
+      std::fprintf(stderr, "saphira: a robot %s has come on the bus: the replay ends here\n",
+                   node_options.robot.c_str());
+      return bus::kExitFailed;
+    }
     const auto now = Clock::now();
     const double turn = std::chrono::duration<double>(now - before).count();
     before = now;

@@ -222,7 +222,7 @@ class Calls : public test::LinePlayer {
 };
 
 TEST(Navigation, IsAsWritten) {
-  EXPECT_EQ(test::play<Calls>("services/intentions/test/navigation.txt"), 21);
+  EXPECT_EQ(test::play<Calls>("services/intentions/test/navigation.txt"), 22);
 }
 
 class Exploring : public testing::Test, protected Site {};

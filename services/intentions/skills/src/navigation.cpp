@@ -390,20 +390,23 @@ Value arrival(const World& world, Values arguments) {
   return Value("the robot is at " + (region ? world.around.topology->text(*region) : "its place"));
 }
 
-/// The words of a text, separated by commas or blanks.
+/// The parts of a text between its commas; without a comma, its words.
 Value split(const std::string& text) {
-  Value::List words;
-  std::string word;
-  for (const char c : text + ",") {
-    if (c != ',' && c != ' ') {
-      word += c;
+  const char between = text.find(',') != std::string::npos ? ',' : ' ';
+  Value::List parts;
+  std::string part;
+  for (const char c : text + between) {
+    if (c != between) {
+      if (c != ' ' || !part.empty())
+        part += c;
       continue;
     }
-    if (!word.empty())
-      words.emplace_back(word);
-    word.clear();
+    part.erase(part.find_last_not_of(' ') + 1);
+    if (!part.empty())
+      parts.emplace_back(part);
+    part.clear();
   }
-  return Value(std::move(words));
+  return Value(std::move(parts));
 }
 
 void add_places(Functions& functions) {
@@ -418,7 +421,7 @@ void add_places(Functions& functions) {
   functions.add("arrival", 1, 1, "(arrival PLACE): in words: how near its point, or in what region",
                 arrival);
   functions.add(
-      "split", 1, 1, "(split TEXT): its words, between commas or blanks",
+      "split", 1, 1, "(split TEXT): its parts between commas; without a comma, its words",
       [](const World&, Values arguments) { return split(text_of(arguments, 0, "split")); });
   functions.add(
       "room-p", 1, 1, "(room-p THING): whether it is a room of the map",
