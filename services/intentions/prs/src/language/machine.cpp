@@ -122,7 +122,7 @@ class Machine : public Activity {
     const std::string& outcome() const override { return machine_.outcome_; }
     const std::string& reason() const override { return machine_.reason_; }
     double elapsed() const override {
-      return kTick * static_cast<double>(self_.now() - machine_.begun_at_);
+      return in_seconds(self_.now() - machine_.begun_at_);
     }
     const World& world() const override { return self_.world(); }
     void say(std::string text) override { self_.tell(std::move(text)); }
@@ -366,7 +366,7 @@ class Machine : public Activity {
             return false;
           failure(
               thread, v1::CODE_TIMEOUT,
-              "waited " + plain(kTick * static_cast<double>(thread.limit)) + " s for " + step.text,
+              "waited " + plain(in_seconds(thread.limit)) + " s for " + step.text,
               self);
           return true;
         case Step::Op::kIntend:
