@@ -2,7 +2,7 @@
 
 #include "saphira/intentions/executor.hpp"
 
-// What is told of the goals, and for how long.
+// The statuses of the goals: their content, and how long they are told.
 namespace saphira::intentions {
 namespace {
 

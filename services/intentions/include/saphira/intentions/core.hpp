@@ -145,7 +145,7 @@ class Core {
   /// Handles inputs that need no cycle; `silence` [s] since the newest one.
   BetweenOutputs between(const Received& received, double silence);
 
-  /// What came of the endings and the work of the newest updates on the disk: the endings that it
+  /// The result of saving the endings and the work of the newest updates: the endings that the disk
   /// did not take, and why it did not take all [empty: it did].
   void know_saved(const std::vector<Ending>& unsaved, const std::string& trouble);
 
