@@ -7,6 +7,7 @@
 #include "lps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/base/enum_pairs.hpp"
+#include "saphira/bus/sender.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -34,6 +35,34 @@ constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
     }},
     {IntentionState::kRemoved}};
 
+constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
+constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
+
+v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
+  return {.name = behavior.name,
+          .schema = behavior.schema,
+          .priority = behavior.priority,
+          .running = behavior.running,
+          .parameters = saphira::to_bus(behavior.parameters),
+          .intention = behavior.intention,
+          .blocking = behavior.blocking};
+}
+
+v1::IntentionNode to_bus(const IntentionNode& node, const Executor& executor) {
+  return {.id = node.id,
+          .parent = node.parent,
+          .name = node.name,
+          .schema = node.schema,
+          .arguments = node.arguments,
+          .state = kIntentionStates.theirs(node.state),
+          .blocking = node.blocking,
+          .label = node.label,
+          .step = node.step,
+          .since = executor.cycle_of(node.since),
+          .priority = node.priority,
+          .goal = node.goal};
+}
+
 }  // namespace
 
 Goal from_bus(const v1::Goal& goal) {
@@ -49,28 +78,58 @@ Goal from_bus(const v1::Goal& goal) {
   return result;
 }
 
-v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
-  return {.name = behavior.name,
-          .schema = behavior.schema,
-          .priority = behavior.priority,
-          .running = behavior.running,
-          .parameters = saphira::to_bus(behavior.parameters),
-          .intention = behavior.intention,
-          .blocking = behavior.blocking};
+Core::Received::Goal from_bus(const bus::Sample<v1::Goal>& sample) {
+  Core::Received::Goal goal;
+  goal.event.goal = from_bus(sample.data);
+  goal.event.why = sample.data.withdrawn;
+  goal.event.kind = sample.info.disposed || !goal.event.why.empty() ? GoalEvent::Kind::kDisposed
+                                                                    : GoalEvent::Kind::kWritten;
+  goal.person = bus::asker_of(sample.info, sample.data.person);
+  goal.writer = sample.info.writer;
+  goal.age = sample.info.age;
+  return goal;
 }
 
-v1::IntentionNode to_bus(const IntentionNode& node) {
-  return {.id = node.id,
-          .parent = node.parent,
-          .name = node.name,
-          .schema = node.schema,
-          .arguments = node.arguments,
-          .state = kIntentionStates.theirs(node.state),
-          .blocking = node.blocking,
-          .label = node.label,
-          .step = node.step,
-          .priority = node.priority,
-          .goal = node.goal};
+v1::Intentions to_bus(const Core::Outputs& outputs, const Executor& executor) {
+  const intentions::Outputs& intended = outputs.intended;
+  v1::Intentions sample{.behavior_control = intended.behavior_control,
+                        .speed_limit = std::max(0.0, outputs.limit.speed),
+                        .limit_reason = outputs.limit.reason,
+                        .heeds = executor.heeds()};
+  sample.behaviors =
+      converted(intended.behaviors, [](const IntendedBehavior& each) { return to_bus(each); });
+  sample.nodes = converted(
+      intended.nodes, [&](const IntentionNode& node) { return to_bus(node, executor); },
+      kMostNodes);
+  sample.edges = converted(outputs.edges, [](const Edge& edge) {
+    return v1::Edge{.x1 = edge.from.x(), .y1 = edge.from.y(), .x2 = edge.to.x(), .y2 = edge.to.y()};
+  });
+  return sample;
+}
+
+v1::BeliefSet to_bus(const std::vector<Belief>& beliefs, const Executor& executor) {
+  const auto one = [&](const Belief& belief) {
+    return v1::Belief{.name = belief.name,
+                      .value = to_text(belief.value),
+                      .said_by = belief.said_by,
+                      .since = executor.cycle_of(belief.since)};
+  };
+  return {.beliefs = converted(beliefs, one, kMostBeliefs)};
+}
+
+v1::Drawing drawing_of(const std::vector<Vec2>& way) {
+  v1::Drawing drawing{.frame = v1::FRAME_MAP, .shape = v1::DRAWING_LINE};
+  drawing.points =
+      converted(way, [](const Vec2& at) { return v1::DrawnPoint{.x = at.x(), .y = at.y()}; });
+  drawing.red = 70;
+  drawing.green = 130;
+  drawing.blue = 180;
+  return drawing;
+}
+
+Core::Vision from_bus(const v1::Vision& vision) {
+  return {vision.stamp, vision.odom, vision.sees_people || vision.sees_colors,
+          converted(vision.things, [](const auto& thing) { return lps::from_bus(thing); })};
 }
 
 Robot from_bus(const v1::RobotState& robot) {
@@ -151,10 +210,6 @@ v1::ActivitySchema to_bus(const Schema& schema) {
     result.parameters.push_back(std::move(out));
   }
   return result;
-}
-
-v1::Belief to_bus(const Belief& belief) {
-  return {.name = belief.name, .value = to_text(belief.value), .said_by = belief.said_by};
 }
 
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {

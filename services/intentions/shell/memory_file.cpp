@@ -26,6 +26,10 @@ MemoryFile::MemoryFile(std::string path, std::size_t most, Files files)
     : path_(std::move(path)), most_(most), files_(files) {
   if (path_.empty())
     return;
+  const std::filesystem::path folder = std::filesystem::absolute(path_).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw std::invalid_argument(
+        path_ + ": expected a file in a folder that exists, and there is no " + folder.string());
   const bool first = !std::filesystem::exists(path_ + kWork);
   const auto read = [this](const std::string& file, const auto& understand) {
     std::string trouble = read_or_set_aside(file, understand, files_);

@@ -18,7 +18,8 @@ class MemoryFile {
  public:
   /// Reads the file and begins it anew, with the newest `most` endings. A damaged file is set
   /// aside; its readable lines count. An empty path saves nothing. std::runtime_error where it
-  /// cannot be written, std::invalid_argument where it is another file.
+  /// cannot be written, std::invalid_argument where it is another file, or its folder does not
+  /// exist.
   explicit MemoryFile(std::string path, std::size_t most = kMostEndings,
                       Files files = Files::kChange);
 

@@ -1,7 +1,6 @@
 #include "intentions/shell/service.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include "intentions/shell/convert.hpp"
@@ -12,41 +11,14 @@
 #include "saphira/base/text.hpp"
 #include "saphira/bus/audit.hpp"
 #include "saphira/bus/sender.hpp"
-#include "saphira/command_line/command_line.hpp"
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/navigation.hpp"
 
 namespace saphira::intentions {
 namespace {
 
-constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
-constexpr double kReply = 3600.0;           // [s] for agents: an activity has a limit of its own
-constexpr std::size_t kMostGoals = 1024;    // of GoalStatusSet.goals
-constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
-constexpr std::uint64_t kSaveAgain = 10;    // steps
-
-std::vector<std::string> folders(const Options& options) {
-  std::vector<std::string> paths{activities_folder()};
-  if (!options.folder.empty())
-    paths.push_back(options.folder);
-  return paths;
-}
-
-Core::Settings settings(const runtime::Ports& ports, const MemoryFile& memory,
-                        std::shared_ptr<const Functions> functions,
-                        const std::vector<std::string>& approval) {
-  return {built_in(),       memory.memory(), memory.keeps(),
-          ports.lockstep(), approval,        std::move(functions)};
-}
-
-/// Nodes and beliefs as on the bus.
-auto dated(const Executor& executor) {
-  return [&executor](const auto& each) {
-    auto sample = to_bus(each);
-    sample.since = executor.cycle_of(each.since);
-    return sample;
-  };
-}
+constexpr double kReply = 3600.0;         // [s] for agents: an activity has a limit of its own
+constexpr std::size_t kMostGoals = 1024;  // of GoalStatusSet.goals
 
 }  // namespace
 
@@ -76,18 +48,27 @@ Service::Service(runtime::Ports& ports, const Options& options)
       agents_(ports.client(bus::topics::kSolve)),
       memory_(options.memory_file, kMostEndings, ports.files()),
       functions_(all_functions()),
-      folders_(folders(options), functions_, built_in()),
-      settings_(settings(ports, memory_, functions_, options.approval)),
-      core_(settings_) {
-  settings_.memory = {};
+      folders_({activities_folder(), options.folder}, functions_, built_in()),
+      settings_{built_in(),       memory_.memory(), memory_.keeps(),
+                ports.lockstep(), options.approval, functions_} {
   Notes notes;
   for (const std::string& trouble : memory_.troubles())
     notes.warn(trouble);
+  if (const auto behaviors = ports.lockstep() ? std::nullopt : new_behaviors())
+    settings_.registry.know_behaviors(*behaviors);
+  // Warnings about the shipped files are not logged.
+  const ActivityFolders::Reload found = folders_.reload();
+  for (const std::string& error : found.errors)
+    notes.error(error);
+  for (const Schema& schema : found.taken)
+    settings_.registry.add(schema);
+  core_.emplace(settings_);
+  settings_.memory = {};
   ports_.say(notes.lines());
+  tell_activities();
   if (!options.vision && !ports.lockstep())
     unasked_vision_.emplace(ports.newest(bus::topics::kVision));
   ports.gate([this](const v1::RobotState&) { return missing(); });
-  check_files();
 }
 
 void Service::restore(std::string_view state) {
@@ -99,7 +80,7 @@ void Service::restore(std::string_view state) {
 /// as registration, and a registration that takes requests.
 std::string Service::missing() {
   if (!knows_behaviors_)
-    take_behavior_schemas();
+    learn_behaviors();
   if (!knows_behaviors_)
     return bus::topics::kBehaviorSchemas.name;
   // A request to an undiscovered registration would be lost.
@@ -128,10 +109,12 @@ void Service::step(const runtime::Turn& turn) {
   remember(outputs.intended.updates);
   if (const auto& by = outputs.intended.stop)
     stops_.ask({"stop", {{"by", *by}}}, std::exchange(next_stop_, bus::next_request_number()));
+  if (!outputs.degraded.empty())
+    ports_.degrade(outputs.degraded);
   publish(outputs);
   publish(outputs.intended.updates);
   if (outputs.beliefs)
-    publish(*outputs.beliefs);
+    beliefs_.write(to_bus(*outputs.beliefs, core_->executor()));
   if (outputs.way)
     draw_way(*outputs.way);
   if (outputs.look)
@@ -203,9 +186,7 @@ std::optional<Core::Vision> Service::vision() {
                                                       : nullptr;
   if (sample == nullptr)
     return std::nullopt;
-  Core::Vision vision{sample->stamp, sample->odom, sample->sees_people || sample->sees_colors, {}};
-  vision.things = converted(sample->things, [](const auto& thing) { return lps::from_bus(thing); });
-  return vision;
+  return from_bus(*sample);
 }
 
 void Service::take_maps() {
@@ -215,34 +196,30 @@ void Service::take_maps() {
   }
 }
 
-void Service::take_behavior_schemas() {
+/// The behaviors that there are, where they are other ones now.
+std::optional<std::vector<BehaviorSignature>> Service::new_behaviors() {
   const auto sample = behavior_schemas_.take_newest();
-  if (!sample)
-    return;
-  knows_behaviors_ = true;
-  if (sample->schemas.empty())
-    return;  // no evaluator of behaviors has none
+  knows_behaviors_ = knows_behaviors_ || sample;
+  if (!sample || sample->schemas.empty())  // no evaluator of behaviors has none
+    return std::nullopt;
+  std::vector<BehaviorSignature> behaviors = from_bus(*sample);
+  folders_.know_behaviors(behaviors);
+  return behaviors;
+}
+
+void Service::learn_behaviors() {
   Core::Received received;
-  received.behaviors = from_bus(*sample);
-  folders_.know_behaviors(*received.behaviors);
-  step_between(received);
+  received.behaviors = new_behaviors();
+  if (received.behaviors)
+    step_between(received);
 }
 
 void Service::take_goals(Core::Received& received) {
   received.lost_requesters = goals_.take_lost();
   received.running =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-  for (const auto& sample : goals_.take()) {
-    Core::Received::Goal goal;
-    goal.event.goal = from_bus(sample.data);
-    goal.event.why = sample.data.withdrawn;
-    goal.event.kind = sample.info.disposed || !goal.event.why.empty() ? GoalEvent::Kind::kDisposed
-                                                                      : GoalEvent::Kind::kWritten;
-    goal.person = bus::asker_of(sample.info, sample.data.person);
-    goal.writer = sample.info.writer;
-    goal.age = sample.info.age;
-    received.goals.push_back(std::move(goal));
-  }
+  for (const auto& sample : goals_.take())
+    received.goals.push_back(from_bus(sample));
 }
 
 void Service::take_claims(Core::Received& received) {
@@ -270,53 +247,30 @@ void Service::take_grants(Core::Received& received) {
 
 void Service::check_files() {
   if (knows_behaviors_ || !ports_.lockstep())
-    take_behavior_schemas();
+    learn_behaviors();
   ActivityFolders::Reload reload = folders_.reload();
   if (!reload.changed)
     return;
   Core::Received received;
   received.activities = std::move(reload);
   step_between(received);
+  tell_activities();
+}
+
+void Service::tell_activities() {
   schemas_.write({.schemas = converted(core_->executor().registry().all(),
                                        [](const Schema* schema) { return to_bus(*schema); }),
                   .trouble = folders_.trouble()});
 }
 
-/// A disk that is full is tried again with the next change, and once a second.
 void Service::remember(const GoalUpdates& updates) {
-  unsaved_endings_.insert(unsaved_endings_.end(), updates.endings.begin(), updates.endings.end());
-  if (unsaved_endings_.size() > kMostEndings)
-    unsaved_endings_.erase(unsaved_endings_.begin(), unsaved_endings_.end() - kMostEndings);
-  if (updates.work)
-    unsaved_work_ = updates.work;
-  if (!updates.endings.empty() || updates.work || steps_ % kSaveAgain == 0)
-    save();
-  if (!memory_trouble_.empty())
-    ports_.degrade(memory_trouble_);
-}
-
-void Service::save() {
-  std::string trouble;
-  if (!unsaved_endings_.empty()) {
-    if (memory_.append(unsaved_endings_))
-      unsaved_endings_.clear();
-    else
-      trouble = cannot_be("the memory file", "written") +
-                "; a restart may do a finished goal again, or repeat finished work";
-  }
+  if (updates.endings.empty() && !updates.work)
+    return;
+  const bool ends = memory_.append(updates.endings);
   // It names the newest ending.
-  if (unsaved_work_ && unsaved_endings_.empty()) {
-    if (memory_.keep(*unsaved_work_))
-      unsaved_work_.reset();
-    else
-      trouble = cannot_be("the memory file", "written") + "; a restart may repeat finished work";
-  }
-  if (!trouble.empty() && memory_trouble_.empty()) {
-    Notes notes;
-    notes.warn(trouble);
-    ports_.say(notes.lines());
-  }
-  memory_trouble_ = trouble;
+  const bool all = ends && (!updates.work || memory_.keep(*updates.work));
+  core_->know_saved(ends ? std::vector<Ending>() : updates.endings,
+                    all ? "" : cannot_be("the memory file", "written"));
 }
 
 void Service::publish(const GoalUpdates& updates) {
@@ -341,7 +295,6 @@ void Service::publish(const GoalUpdates& updates) {
 
 void Service::publish(const Core::Outputs& said) {
   const intentions::Outputs& outputs = said.intended;
-  const SpeedLimit& limit = said.limit;
   for (const Request& request : outputs.requests)
     map_requests_.ask(request);
   for (const Request& question : outputs.questions) {
@@ -353,16 +306,7 @@ void Service::publish(const Core::Outputs& said) {
     };
     agents_.send(std::move(asked), hear, kReply, kReply);
   }
-  v1::Intentions sample{.behavior_control = outputs.behavior_control,
-                        .speed_limit = std::max(0.0, limit.speed),
-                        .limit_reason = limit.reason,
-                        .heeds = core_->executor().heeds()};
-  sample.behaviors =
-      converted(outputs.behaviors, [](const IntendedBehavior& each) { return to_bus(each); });
-  sample.nodes = converted(outputs.nodes, dated(core_->executor()), kMostNodes);
-  sample.edges = converted(said.edges, [](const Edge& edge) {
-    return v1::Edge{.x1 = edge.from.x(), .y1 = edge.from.y(), .x2 = edge.to.x(), .y2 = edge.to.y()};
-  });
+  v1::Intentions sample = to_bus(said, core_->executor());
   intentions_.write(sample);
   recall_.write(sample);
   for (const SpokenText& one : outputs.said) {
@@ -371,60 +315,13 @@ void Service::publish(const Core::Outputs& said) {
 }
 
 void Service::draw_way(const std::vector<Vec2>& way) {
-  v1::Drawing drawing{.instance = ports_.instance()};
-  if (way.empty()) {
-    drawings_.dispose(drawing);
-    return;
-  }
+  v1::Drawing drawing = drawing_of(way);
+  drawing.instance = ports_.instance();
   drawing.source = ports_.name();
-  drawing.frame = v1::FRAME_MAP;
-  drawing.shape = v1::DRAWING_LINE;
-  drawing.points =
-      converted(way, [](const Vec2& at) { return v1::DrawnPoint{.x = at.x(), .y = at.y()}; });
-  drawing.red = 70;
-  drawing.green = 130;
-  drawing.blue = 180;
-  drawings_.write(std::move(drawing));
-}
-
-void Service::publish(const std::vector<Belief>& beliefs) {
-  beliefs_.write({.beliefs = converted(beliefs, dated(core_->executor()), kMostBeliefs)});
-}
-
-namespace {
-
-std::string in_a_folder(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  return std::filesystem::is_directory(folder)
-             ? ""
-             : path + ": expected a file in a folder that exists, and there is no " +
-                   folder.string();
-}
-
-}  // namespace
-
-runtime::Component component() {
-  const auto options = std::make_shared<Options>();
-  return {
-      "intentions", "Takes goals from anybody on the bus and intends what they need",
-      [options](CommandLine& app) {
-        app.add_option("--memory", options->memory_file,
-                       "file that remembers ended goals over a restart, so that none is done twice")
-            .check(in_a_folder);
-        app.add_flag("!--no-registration", options->registration,
-                     "there is no registration service: do not wait for it in lockstep");
-        app.add_flag("!--no-interpretation", options->interpretation, "the same of interpretation");
-        app.add_flag("--vision", options->vision,
-                     "there is a vision service: wait for it in lockstep");
-        app.add_option("--activities", options->folder,
-                       "folder of activity files; they cover shipped ones of the same name");
-        app.add_option(
-               "--approval", options->approval,
-               "role, or beginning of an asker's name such as \"language model\": its goals "
-               "wait until a person approves them (saphira goal approve)")
-            .one_value_each();
-      },
-      [options](runtime::Ports& ports) { return std::make_unique<Service>(ports, *options); }};
+  if (way.empty())
+    drawings_.dispose(std::move(drawing));
+  else
+    drawings_.write(std::move(drawing));
 }
 
 }  // namespace saphira::intentions

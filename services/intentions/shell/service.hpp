@@ -51,7 +51,9 @@ class Service final : public runtime::Service {
  private:
   std::string missing();
   void step_between(const Core::Received& received, double silence = 0.0);
-  void take_behavior_schemas();
+  std::optional<std::vector<BehaviorSignature>> new_behaviors();
+  void learn_behaviors();
+  void tell_activities();
   void take_maps();
   void take_goals(Core::Received& received);
   void take_claims(Core::Received& received);
@@ -60,11 +62,9 @@ class Service final : public runtime::Service {
   std::optional<Core::Vision> vision();
   /// To the disk, before it is published: nothing reported or done is done again.
   void remember(const GoalUpdates& updates);
-  void save();
   void publish(const GoalUpdates& updates);
   void say(const Notes& notes, const std::vector<v1::AuditEntry>& audit);
   void publish(const Core::Outputs& said);
-  void publish(const std::vector<Belief>& beliefs);
   void draw_way(const std::vector<Vec2>& way);
 
   runtime::Ports& ports_;
@@ -99,9 +99,6 @@ class Service final : public runtime::Service {
   std::map<GoalId, v1::GoalStatus> told_;  ///< the content of goals/status
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   MemoryFile memory_;
-  std::vector<Ending> unsaved_endings_;  ///< the file could not be written
-  std::optional<Work> unsaved_work_;     ///< likewise
-  std::string memory_trouble_;           ///< why, in words; empty: all is saved
   std::shared_ptr<const Functions> functions_;
   ActivityFolders folders_;
   Core::Settings settings_;

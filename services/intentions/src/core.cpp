@@ -67,13 +67,11 @@ Core::Outputs Core::step(Inputs inputs) {
   now.behaviors_cycle = inputs.behaviors_cycle;
   now.intent_age = inputs.intent_age;
   now.claims = claims_of(inputs.received);
-  const bool first_grant = !newest_grant_;
   note_grants(inputs.received.grants);
   now.estop = estop_;
   if (newest_grant_) {
     now.stop = newest_grant_->stop;
     now.stop_source = newest_grant_->stop_source;
-    now.stop_was_before = first_grant;
   }
   now.confirms_stops = !lockstep_;
   if (!execution_.works())
@@ -102,6 +100,9 @@ Core::Outputs Core::step(Inputs inputs) {
   report(outputs.intended.updates, outputs.notes);
   for (const SpokenText& said : outputs.intended.said)
     outputs.notes.info("says: " + said.text);
+  outputs.degraded = disk_trouble_;
+  if (std::exchange(told_trouble_, disk_trouble_).empty() && !disk_trouble_.empty())
+    outputs.notes.warn(disk_trouble_);
   if (const std::uint64_t revision = executor_.beliefs().revision();
       revision != beliefs_revision_) {
     beliefs_revision_ = revision;
@@ -198,19 +199,12 @@ std::string Core::who_is_gone(const Inputs& inputs) {
 Core::BetweenOutputs Core::between(const Received& received, double silence) {
   BetweenOutputs told;
   learn(received, told.notes);
-  told.updates = executor_.take_events(events_of(received, told));
   // A single-stepped simulator may stand still for any time.
   if (robot_here_ && !lockstep_ && silence > kSilence) {
     robot_here_ = false;
-    GoalUpdates gone = executor_.robot_gone();
-    const auto append = [](auto& to, auto& from) {
-      to.insert(to.end(), std::make_move_iterator(from.begin()),
-                std::make_move_iterator(from.end()));
-    };
-    append(told.updates.changed, gone.changed);
-    append(told.updates.withdrawn, gone.withdrawn);
-    append(told.updates.endings, gone.endings);
+    executor_.lose_robot();
   }
+  told.updates = executor_.take_events(events_of(received, told));
   report(told.updates, told.notes);
   return told;
 }
@@ -280,10 +274,10 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
 
 void Core::archive(Archive& a) {
   a("processes", processes_)("executor", executor_)("remembers", remembers_)(
-      "memory_damaged", memory_damaged_)("knows_activities", knows_activities_)("gaze", gaze_)(
-      "adds_features", adds_features_)("estop", estop_)("newest_grant", newest_grant_)("lps", lps_)(
-      "percepts", percepts_)("things", things_)("readings", readings_)("map", map_)(
-      "places", places_)("near_of", near_of_)("near", near_)("places_revision", places_revision_)(
+      "memory_damaged", memory_damaged_)("gaze", gaze_)("adds_features", adds_features_)(
+      "estop", estop_)("newest_grant", newest_grant_)("lps", lps_)("percepts", percepts_)(
+      "things", things_)("readings", readings_)("map", map_)("places", places_)(
+      "near_of", near_of_)("near", near_)("places_revision", places_revision_)(
       "newer_maps", newer_maps_)("requesters", requesters_)("owners", owners_)("answers", answers_)(
       "claimants", claimants_)("logged", logged_)("nodes", nodes_)("way", way_)(
       "beliefs_revision", beliefs_revision_)("robot_here", robot_here_)(
@@ -295,9 +289,15 @@ void Core::archive(Archive& a) {
   executor_.know_places(topology_);
 }
 
+void Core::know_saved(const std::vector<Ending>& unsaved, const std::string& trouble) {
+  disk_trouble_ = trouble.empty() ? "" : trouble + "; a restart may do finished work again";
+  if (!trouble.empty())
+    executor_.not_saved(unsaved);
+}
+
 void Core::learn(const Received& received, Notes& notes) {
   if (received.behaviors) {
-    executor_.know_behaviors(*received.behaviors);
+    executor_.registry().know_behaviors(*received.behaviors);
     for (const Diagnostic& trouble : check_references(executor_.registry()))
       notes.warn(trouble.text());
   }
@@ -306,21 +306,17 @@ void Core::learn(const Received& received, Notes& notes) {
 }
 
 void Core::know(const ActivityFolders::Reload& reload, Notes& notes) {
-  const bool first = !std::exchange(knows_activities_, true);
   for (const std::string& error : reload.errors)
     notes.error(error);
-  // At the start the behaviors are unknown, and warnings about the shipped files are not logged.
-  if (!first)
-    for (const std::string& warning : reload.warnings)
-      notes.warn(warning);
+  for (const std::string& warning : reload.warnings)
+    notes.warn(warning);
   for (const std::string& name : reload.removed) {
-    executor_.remove(name);
+    executor_.registry().remove(name);
     notes.info(name + " is gone: no file gives it any more");
   }
   for (const Schema& schema : reload.taken) {
-    executor_.add(schema);
-    if (!first)
-      notes.info("took " + schema.name + " of " + schema.source);
+    executor_.registry().add(schema);
+    notes.info("took " + schema.name + " of " + schema.source);
   }
 }
 

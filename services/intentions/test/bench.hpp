@@ -82,7 +82,6 @@ class Bench {
     inputs.estop = estop;
     inputs.stop = stop;
     inputs.stop_source = "a person";
-    inputs.stop_was_before = stop_was_before;
     inputs.confirms_stops = confirms_stops;
     inputs.around.registration = registration;
     inputs.around.robot_radius = radius;
@@ -118,7 +117,6 @@ class Bench {
   double radius = 0.0;                        ///< [m] of the robot; 0: unknown
   std::string estop;  ///< program that pressed the emergency stop; empty: none
   v1::StopId stop;    ///< the newest stop of the bridge
-  bool stop_was_before = false;
   bool confirms_stops = false;
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them

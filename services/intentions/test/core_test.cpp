@@ -368,7 +368,7 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
   }
 }
 
-TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
+TEST_F(CoreTest, ActivitiesOfFilesThatHaveChangedAreToldOf) {
   Core core(settings());
   const auto look = [&](const ActivityFolders::Reload& reload) {
     Core::Received received;
@@ -383,11 +383,10 @@ TEST_F(CoreTest, ActivitiesOfFilesAreToldOfAfterTheFirstLook) {
   updates.errors = {"other.act:1:2: expected a name"};
   updates.warnings = {"wave.act:3: it is odd"};
   using Lines = std::vector<Note>;
-  EXPECT_EQ(look(updates), (Lines{{Note::Level::error, "other.act:1:2: expected a name"}}));
-  EXPECT_NE(core.executor().registry().find("wave"), nullptr);
   EXPECT_EQ(look(updates), (Lines{{Note::Level::error, "other.act:1:2: expected a name"},
                                   {Note::Level::warning, "wave.act:3: it is odd"},
                                   {Note::Level::info, "took wave of wave.act"}}));
+  EXPECT_NE(core.executor().registry().find("wave"), nullptr);
   updates = {};
   updates.removed = {"wave"};
   EXPECT_EQ(look(updates), (Lines{{Note::Level::info, "wave is gone: no file gives it any more"}}));
@@ -459,6 +458,18 @@ TEST_F(CoreTest, AGoalThatIsKeptOverARestartIsStillItsOwners) {
     withdraw(next, who);
     EXPECT_EQ(state(1), v1::GOAL_CANCELED) << who.name;
   }
+}
+
+TEST_F(CoreTest, IsDegradedWhileNotAllIsSaved) {
+  Core core(settings());
+  step(core);
+  core.know_saved({}, "the disk is full");
+  const Core::Outputs outputs = step(core);
+  EXPECT_EQ(outputs.degraded, "the disk is full; a restart may do finished work again");
+  EXPECT_EQ(outputs.notes.lines(), (std::vector<Note>{{Note::Level::warning, outputs.degraded}}));
+  EXPECT_TRUE(step(core).notes.lines().empty()) << "it is told once";
+  core.know_saved({}, "");
+  EXPECT_EQ(step(core).degraded, "");
 }
 
 TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {

@@ -46,7 +46,6 @@ TEST(Executor, AStopWhileTheServiceWasDownEndsItsGoals) {
     Bench bench(memory);
     bench.ask(1, "drive", kSlow);
     bench.stop = now;
-    bench.stop_was_before = true;
     bench.step();
     EXPECT_EQ(bench.state(1) == v1::GOAL_UNDERWAY, now == kFirst);
   }

@@ -42,16 +42,15 @@ class Desk : public test::LinePlayer {
         {"lose-writer", [this](auto& in) { bench_->lose_writer(read<std::uint64_t>(in)); }},
         {"estop", [this](auto& in) { bench_->estop = rest(in); }},
         {"stop", [this](auto& in) { bench_->stop = stop_of(rest(in)); }},
-        {"stop-was-before",
-         [this](auto& in) {
-           bench_->stop = stop_of(rest(in));
-           bench_->stop_was_before = true;
-         }},
         {"bridge-confirms", [this](auto&) { bench_->confirms_stops = true; }},
         {"heed", [this](auto& in) { bench_->executor.heed(stop_of(rest(in))); }},
         {"interrupt",
          [this](auto&) { EXPECT_TRUE(bench_->executor.interrupt(bench_->out.nodes.at(0).id)); }},
-        {"robot-gone", [this](auto&) { bench_->note(bench_->executor.robot_gone()); }},
+        {"robot-gone",
+         [this](auto&) {
+           bench_->executor.lose_robot();
+           bench_->hear();
+         }},
         {"connected", [this](auto& in) { bench_->world.robot.connected = rest(in) == "yes"; }},
         {"new-connection", [this](auto&) { connect_anew(); }},
         {"new-odom", [this](auto&) { bench_->world.robot.odom = 2; }},

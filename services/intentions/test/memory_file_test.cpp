@@ -145,7 +145,7 @@ TEST(MemoryFile, WhatIsDamagedIsSetAsideAndTheRestCounts) {
   EXPECT_EQ(read_file(path + ".damaged"), content);
   EXPECT_EQ(read_file(path), line(kEnding));
   EXPECT_TRUE(MemoryFile(path).troubles().empty());
-  EXPECT_THROW(MemoryFile{dir.path("no/such/folder")}, std::runtime_error);
+  EXPECT_THROW(MemoryFile{dir.path("no/such/folder")}, std::invalid_argument);
 }
 
 // Each bit of a line flipped: no remaining entry is wrong.
@@ -176,7 +176,7 @@ TEST(MemoryFile, ADryRunChangesNoFile) {
   EXPECT_EQ(read_file(path), content);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
   EXPECT_THROW(MemoryFile(dir.path("no/such/folder"), kMostEndings, Files::kStay),
-               std::runtime_error);
+               std::invalid_argument);
 }
 
 TEST(MemoryFile, AnotherFileIsRefusedAndStays) {

@@ -16,7 +16,7 @@ TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
       *stage.options.functions, stage.executor->registry());
   ASSERT_TRUE(changed.ok()) << errors(changed);
   for (const Schema& schema : changed.schemas)
-    stage.executor->add(schema);
+    stage.executor->registry().add(schema);
   stage.step(2);
   EXPECT_EQ(stage.status(1).state, v1::GOAL_UNDERWAY);
   stage.stall(true, 3);

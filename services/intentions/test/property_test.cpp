@@ -92,7 +92,7 @@ TEST(ExecutorProperty, HoldsForRandomGoals) {
       if (random.chance(0.1))
         bench.world.held = !bench.world.held;
       if (random.chance(0.01))
-        bench.note(bench.executor.robot_gone());
+        bench.executor.lose_robot();
       if (random.chance(0.01))
         bench.world.robot.connected = !bench.world.robot.connected;
       if (random.chance(0.005)) {

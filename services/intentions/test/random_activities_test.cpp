@@ -174,7 +174,7 @@ TEST(RandomActivities, NeverLoseAParentAndLeaveNothingBehind) {
         const Loaded again = load_text("test.act", schemas(random), *stage.options.functions,
                                        stage.executor->registry());
         for (const Schema& schema : again.schemas)
-          stage.executor->add(schema);
+          stage.executor->registry().add(schema);
       }
       stage.step();
       check(stage, 400 + last);

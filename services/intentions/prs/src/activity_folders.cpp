@@ -15,7 +15,8 @@ ActivityFolders::ActivityFolders(const std::vector<std::string>& paths,
                                  std::shared_ptr<const Functions> functions, Registry base)
     : functions_(std::move(functions)), base_(std::move(base)) {
   for (const std::string& path : paths)
-    layers_.push_back({WatchedFolder(path, ".act"), {}, false});
+    if (!path.empty())
+      layers_.push_back({WatchedFolder(path, ".act"), {}, false});
 }
 
 void ActivityFolders::know_behaviors(std::vector<BehaviorSignature> behaviors) {

@@ -341,7 +341,7 @@ void Forest::watch(Node& node, const World& world) {
   } else if (node.timeout > 0 && world.now - node.begun >= node.timeout) {
     node.shown.state = IntentionState::kTimeout;
     node.outcome = {IntentionState::kTimeout, v1::CODE_TIMEOUT,
-                    "not satisfied in " + plain(kTick * static_cast<double>(node.timeout)) + " s"};
+                    "not satisfied in " + plain(in_seconds(node.timeout)) + " s"};
   }
 }
 
@@ -412,7 +412,7 @@ void Forest::conclude(Node& node, bool interrupted, const World& world) {
   } else if (node.timeout > 0 && world.now - node.begun >= node.timeout) {
     node.shown.state = IntentionState::kTimeout;
     node.outcome = {IntentionState::kTimeout, v1::CODE_TIMEOUT,
-                    "not done in " + plain(kTick * static_cast<double>(node.timeout)) + " s"};
+                    "not done in " + plain(in_seconds(node.timeout)) + " s"};
   } else {
     node.shown.state = IntentionState::kRunning;
   }

@@ -344,7 +344,7 @@ void add_beliefs(Functions& functions) {
       "belief-since", 1, 1, "(belief-since 'name): when it was said, as (now) [s]; nil: it was not",
       [](const World& world, Values a) {
         const Belief* const belief = world.beliefs.stored(normal(text_of(a, 0, "belief-since")));
-        return belief == nullptr ? Value() : Value(kTick * static_cast<double>(belief->since));
+        return belief == nullptr ? Value() : Value(in_seconds(belief->since));
       });
   functions.add("belief-by", 1, 1,
                 "(belief-by 'name): the person who said it, in small letters; nil: not known",
@@ -357,9 +357,8 @@ void add_beliefs(Functions& functions) {
     const std::string* const text = a[0].text();
     return Value::truth(a[0].is_t() || (text != nullptr && normal(*text) == "yes"));
   });
-  functions.add(
-      "now", 0, 0, "(now): the robot's time since the service began [s]",
-      [](const World& world, Values) { return Value(kTick * static_cast<double>(world.now)); });
+  functions.add("now", 0, 0, "(now): the robot's time since the service began [s]",
+                [](const World& world, Values) { return Value(in_seconds(world.now)); });
 }
 
 void add_conditions(Functions& functions) {

@@ -16,7 +16,7 @@ constexpr double kFarthest = 10e3;
 constexpr double kMostTurns = 1e3;  ///< [rad] of an accumulated heading
 
 /// Without hyphens: the same for follow-corridor and FollowCorridor.
-std::string joined(std::string_view name) {
+std::string without_hyphens(std::string_view name) {
   std::string result = normal(name);
   std::erase(result, '-');
   return result;
@@ -133,14 +133,14 @@ std::string Registry::instead_of(std::string_view functor) const {
 void Registry::know_behaviors(std::vector<BehaviorSignature> behaviors) {
   behaviors_.clear();
   for (BehaviorSignature& behavior : behaviors) {
-    std::string name = joined(behavior.name);
+    std::string name = without_hyphens(behavior.name);
     behaviors_.insert_or_assign(std::move(name), std::move(behavior));
   }
   knows_behaviors_ = true;
 }
 
 const BehaviorSignature* Registry::behavior(std::string_view name) const {
-  const auto found = behaviors_.find(joined(name));
+  const auto found = behaviors_.find(without_hyphens(name));
   return found == behaviors_.end() ? nullptr : &found->second;
 }
 

@@ -24,15 +24,18 @@ void Stops::heed(const v1::StopId& own) {
     own_.pop_front();
 }
 
-bool Stops::take(const v1::StopId& newest, bool was_before) {
+bool Stops::take(const v1::StopId& newest) {
+  if (!heeds_) {
+    heeds_ = seen_ = newest;
+    return false;
+  }
   if (newest == v1::StopId{} || newest == seen_)
     return false;
   const auto found = std::find(own_.begin(), own_.end(), newest);
   const bool own = found != own_.end();
   // The bridge comes to a later one of our own by itself.
-  const bool overtaken = std::find(found, own_.end(), heeds_) != own_.end();
-  const bool old =
-      (!own && newest == heeds_) || (was_before && !remembers_ && heeds_ == v1::StopId{});
+  const bool overtaken = std::find(found, own_.end(), *heeds_) != own_.end();
+  const bool old = !own && newest == heeds_;
   seen_ = newest;
   if (!overtaken)
     heeds_ = newest;

@@ -32,7 +32,7 @@ class Core {
   using Writer = std::array<std::uint8_t, 16>;
 
   struct Settings {
-    Registry registry;  ///< available intentions, before any file is read
+    Registry registry;  ///< available intentions: those of the memory are among them
     Memory memory;      ///< the memory from before a restart
     bool remembers_work = false;
     bool lockstep = false;
@@ -130,6 +130,7 @@ class Core {
     SpeedLimit limit;            ///< for the intended behaviors
     std::vector<Edge> edges;     ///< [odom] of the map near the robot
     std::optional<double> look;  ///< [rad] the direction that the head has to turn to
+    std::string degraded{};      ///< the trouble of the service [empty: none]
     Notes notes;
     std::vector<v1::AuditEntry> audit;
   };
@@ -143,6 +144,10 @@ class Core {
   };
   /// Handles inputs that need no cycle; `silence` [s] since the newest one.
   BetweenOutputs between(const Received& received, double silence);
+
+  /// The result of saving the endings and the work of the newest updates: the endings that the disk
+  /// did not take, and why it did not take all [empty: it did].
+  void know_saved(const std::vector<Ending>& unsaved, const std::string& trouble);
 
   const Executor& executor() const { return executor_; }
   ProcessTable& processes() { return processes_; }
@@ -180,7 +185,6 @@ class Core {
   std::vector<std::string> approval_;
   bool remembers_ = false;  ///< the memory of goals from before this start is whole
   bool memory_damaged_ = false;
-  bool knows_activities_ = false;
   Executor executor_;
   ProcessTable processes_;
   /// While suspended, nothing is intended: the goals are suspended, and the robot is released.
@@ -189,6 +193,8 @@ class Core {
   Process& centering_ = processes_.add(
       "center-cameras", "keeps the cameras on the person or point of the belief gaze");
   Gaze gaze_;
+  std::string disk_trouble_;    ///< why not all is saved; empty: all is
+  std::string told_trouble_;    ///< as of the newest step
   bool adds_features_ = false;  ///< an intention lets the map grow
   std::string estop_;           ///< the program that pressed the latched emergency stop
   std::optional<Received::Grant> newest_grant_;

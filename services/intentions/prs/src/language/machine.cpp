@@ -121,9 +121,7 @@ class Machine : public Activity {
     }
     const std::string& outcome() const override { return machine_.outcome_; }
     const std::string& reason() const override { return machine_.reason_; }
-    double elapsed() const override {
-      return kTick * static_cast<double>(self_.now() - machine_.begun_at_);
-    }
+    double elapsed() const override { return in_seconds(self_.now() - machine_.begun_at_); }
     const World& world() const override { return self_.world(); }
     void say(std::string text) override { self_.tell(std::move(text)); }
     void request(Request request) override { self_.request(std::move(request)); }
@@ -364,10 +362,8 @@ class Machine : public Activity {
           }
           if (!too_late(thread, self))
             return false;
-          failure(
-              thread, v1::CODE_TIMEOUT,
-              "waited " + plain(kTick * static_cast<double>(thread.limit)) + " s for " + step.text,
-              self);
+          failure(thread, v1::CODE_TIMEOUT,
+                  "waited " + plain(in_seconds(thread.limit)) + " s for " + step.text, self);
           return true;
         case Step::Op::kIntend:
           return poll_child(thread, self);

@@ -15,7 +15,7 @@ namespace saphira::intentions {
 /// earlier ones. A file with an error changes nothing: its earlier activities stay.
 class ActivityFolders {
  public:
-  /// base: the schemas that activities may name besides each other.
+  /// An empty path is none. base: the schemas that activities may name besides each other.
   ActivityFolders(const std::vector<std::string>& paths, std::shared_ptr<const Functions> functions,
                   Registry base);
 

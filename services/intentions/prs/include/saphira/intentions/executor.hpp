@@ -13,6 +13,7 @@
 #include "saphira/idl/behavior.hpp"
 #include "saphira/idl/common.hpp"
 #include "saphira/intentions/beliefs.hpp"
+#include "saphira/intentions/endings.hpp"
 #include "saphira/intentions/forest.hpp"
 #include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/goal.hpp"
@@ -51,10 +52,9 @@ struct Inputs {
   std::string hold{};    ///< the reason why all goals wait; empty: they do not
   std::string person{};  ///< why goals that drive are to wait for a person; empty: they are not
   std::string estop{};   ///< the program that pressed the latched emergency stop; empty: none
-  v1::StopId stop{};     ///< the newest stop of the bridge
-  std::string stop_source{};     ///< its asker
-  bool stop_was_before = false;  ///< the service has just begun: the stop may be an old one
-  bool confirms_stops = false;   ///< live: the bridge's newest stop comes within some cycles
+  std::optional<v1::StopId> stop{};  ///< the newest stop of the bridge; none: it was not heard
+  std::string stop_source{};         ///< its asker
+  bool confirms_stops = false;       ///< live: the bridge's newest stop comes within some cycles
   /// [cycles] Age of the intent that the behaviors were computed from.
   std::uint64_t intent_age = 1;
 };
@@ -113,18 +113,19 @@ class Executor {
   /// The id of the stop that a step asked for: goals of afterwards may drive.
   void heed(const v1::StopId& own) { stops_.heed(own); }
   /// The stop that all goals that drive come after.
-  const v1::StopId& heeds() const { return stops_.heeds(); }
+  v1::StopId heeds() const { return stops_.heeds().value_or(v1::StopId{}); }
 
   /// The robot is gone (no cycles come). Goals wait for it; the next step continues.
-  GoalUpdates robot_gone();
+  void lose_robot(const std::string& hold = {});
 
-  /// Adds a schema, or replaces an older one: begun goals and intentions keep theirs.
-  void add(Schema schema);
-  void remove(std::string_view name);
-  void know_behaviors(std::vector<BehaviorSignature> behaviors);
+  /// The disk took neither the newest work nor these endings: they come again.
+  void not_saved(const std::vector<Ending>& endings) { endings_.not_saved(endings, now_); }
+
   /// The places of the map: a hint for a person who asks for one in place of an activity.
   void know_places(std::shared_ptr<const maps::Topology> places) { places_ = std::move(places); }
   const Registry& registry() const { return *registry_; }
+  /// Begun goals and intentions keep the schemas that they have.
+  Registry& registry() { return *registry_; }
   const Beliefs& beliefs() const { return *beliefs_; }
   /// The robot's cycle at a time of nodes and beliefs, whose clock began with the service and does
   /// not count its sleep. 0: before the epoch.
@@ -152,7 +153,10 @@ class Executor {
 
  private:
   using Entry = GoalEntry;
-  using Entries = std::map<GoalId, Entry>;
+  struct Wait {
+    std::string why;
+    GoalCode code = v1::CODE_NONE;
+  };
 
   void pass_time(const Inputs& inputs);
   void take_in(const GoalEvent& event);
@@ -164,34 +168,25 @@ class Executor {
   bool is_place(const std::string& functor) const;
   static void become(Entry& entry, GoalState state, GoalCode code, std::string reason);
   void end(Entry& entry, GoalState state, GoalCode code, std::string reason);
-  void remember(const Ending& ending);
   void forget_ended();
-  static void wait(Entry& entry, GoalCode code, std::string reason);
   void suspend(Entry& entry, GoalCode code, std::string reason);
-  void lose_robot(const std::string& hold = {});
   void lose_robot(Entry& entry, const std::string& hold);
   void meet_odom(std::uint64_t odom);
-  void meet_odom(Entry& entry, std::uint64_t odom);
   void place(Entry& entry, const Robot& robot);
   void pass_changes();
-  void end_lost();
+  void settle();
   void check_deadlines(const Robot& robot);
   void replace();
-  void obey_stop(const Inputs& inputs);
   void end_driving(const std::string& why);
   std::string step_of(const IntentionNode& node) const;
-  static bool drives(const Entry& entry);
-  std::string why_to_wait(const Entry& entry) const;
-  Entry* best();
+  Wait why_to_wait(const Entry& entry) const;
   Entry* arbitrate();
   void queue(Entry& entry, const Goal& front);
   void begin(Entry& entry);
-  Entries::iterator take_up(const GoalId& id);
-  void settle_unheard();
-  void end_unheard(const GoalId& id, GoalCode code, const std::string& why);
-  void begin_concurrent();
   std::vector<Belief> lasting_beliefs() const;
-  std::optional<Work> take_work(bool changed);
+  std::optional<Work> work();
+  void recall(const Work& work);
+  void recall(Entry& entry);
   void measure(Entry& entry);
   bool collect();
   static std::optional<GoalStatus> refused_change(const Entry& entry);
@@ -202,13 +197,9 @@ class Executor {
   std::shared_ptr<const maps::Topology> places_;  ///< none: no map
   std::shared_ptr<Beliefs> beliefs_;
   Forest forest_;
-  Entries entries_;
-  Entries unheard_;           ///< from before a restart
-  bool other_epoch_ = false;  ///< the bridge was started again since that restart, or before it
-  bool was_placed_ = false;   ///< before a restart it was known where the robot is on the map
+  std::map<GoalId, Entry> entries_;
   std::uint64_t set_revision_ = 0;
-  std::map<GoalId, Ending> remembered_;
-  std::deque<GoalId> remembered_order_;
+  Endings endings_;
   std::deque<GoalId> ended_order_;  ///< ended entries, in the order of their ends
   std::uint64_t next_order_ = 1;
   Ticks now_ = 0;    ///< of deadlines, and of what others are told
@@ -217,12 +208,11 @@ class Executor {
   std::uint64_t cycle_ = 0;
   bool robot_here_ = false;
   bool on_map_ = false;  ///< it is known where the robot is on the map
-  Ticks recalled_ = 0;   ///< time of the start
+  Ticks place_by_ = 0;   ///< goals of before a restart wait until then for on_map_
   std::string person_;   ///< of the newest inputs
   Stops stops_;
   std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot
   std::vector<GoalId> withdrawn_;
-  std::vector<Ending> endings_;
 };
 
 }  // namespace saphira::intentions

@@ -16,15 +16,15 @@ class Stops {
  public:
   Stops() = default;
   /// `heeds`: from before a restart.
-  explicit Stops(const v1::StopId& heeds) : heeds_(heeds), saved_(heeds), remembers_(true) {}
+  explicit Stops(const std::optional<v1::StopId>& heeds) : heeds_(heeds), saved_(heeds) {}
 
   /// A goal "stop" has begun for that requester.
   void ask(std::string requester, Ticks now);
   /// The id of the stop that the bridge was asked for: goals of afterwards may drive.
   void heed(const v1::StopId& own);
-  /// Takes the newest stop of the bridge. `was_before`: the service has just begun, and without a
-  /// memory such a stop says nothing about the goals. True: it ends the goals that drive.
-  bool take(const v1::StopId& newest, bool was_before);
+  /// Takes the newest stop of the bridge. One from before heeds() is known says nothing about the
+  /// goals. True: it ends the goals that drive.
+  bool take(const v1::StopId& newest);
   /// No goal "stop" is open any more: a stop that was not confirmed is not asked for again.
   /// `confirms`: the bridge tells its stops.
   void give_up(bool confirms);
@@ -33,25 +33,24 @@ class Stops {
   std::optional<std::string> asks(Ticks now, bool confirms) const;
   /// No stop is asked for that the bridge has not confirmed.
   bool confirmed() const { return !requester_; }
-  /// Goals that drive come after it.
-  const v1::StopId& heeds() const { return heeds_; }
+  /// Goals that drive come after it; none: no bridge was heard yet.
+  const std::optional<v1::StopId>& heeds() const { return heeds_; }
   /// True once after a change of heeds().
   bool take_changed();
 
   template <class Archive>
   void archive(Archive& a) {
     a("heeds", heeds_)("saved", saved_)("seen", seen_)("own", own_)("requester", requester_)(
-        "asked", asked_)("remembers", remembers_);
+        "asked", asked_);
   }
 
  private:
-  v1::StopId heeds_;
-  v1::StopId saved_;
+  std::optional<v1::StopId> heeds_;
+  std::optional<v1::StopId> saved_;
   v1::StopId seen_;             ///< the bridge's newest
   std::deque<v1::StopId> own_;  ///< that may be on their way
   std::optional<std::string> requester_;
   Ticks asked_ = 0;
-  bool remembers_ = false;  ///< heeds_ is from before a restart, also where there was no stop
 };
 
 }  // namespace saphira::intentions

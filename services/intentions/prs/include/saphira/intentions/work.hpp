@@ -13,6 +13,7 @@
 #include "saphira/idl/common.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/goal.hpp"
+#include "saphira/intentions/requester.hpp"
 #include "saphira/intentions/schema.hpp"
 
 namespace saphira::intentions {
@@ -33,16 +34,18 @@ struct GoalEntry {
   Ticks ended = 0;
   std::uint32_t node = 0;  ///< root of its tree; 0: not begun
   GoalStatus status;
-  std::optional<Ticks> lost;  ///< its program, whose end is its end, is not heard since then
-  bool before = false;        ///< it was accepted before a restart of the service
-  std::string refusal;        ///< of the newest change, which was rejected; empty: none
+  Requester requester;  ///< the program that asked for it
+  bool before = false;  ///< it was accepted before a restart of the service
+  std::string refusal;  ///< of the newest change, which was rejected; empty: none
   GoalCode refusal_code = v1::CODE_NONE;
   std::optional<GoalStatus> published;
   Ticks published_at = 0;
   std::deque<double> levels;  ///< of the last cycles, for the trend
-  // For a restart.
-  std::uint64_t frame = 0;  ///< the odom frame of its tree
-  Saved tree;               ///< of the Forest
+  Saved tree;                 ///< of the Forest, for a restart
+
+  bool open() const { return !v1::ended(status.state); }
+  /// Neither a stop nor a goal beside the driving one.
+  bool drives() const { return !schema->concurrent && !schema->replaces; }
 
   bool operator==(const GoalEntry&) const = default;
 
@@ -50,9 +53,9 @@ struct GoalEntry {
   void archive(Archive& a) {
     a("goal", goal)("arguments", arguments)("fresh", fresh)("placed", placed)("changed", changed)(
         "replaced", replaced)("unapproved", unapproved)("odom", odom)("order", order)(
-        "accepted", accepted)("ended", ended)("node", node)("status", status)("lost", lost)(
-        "before", before)("refusal", refusal)("refusal_code", refusal_code)("published", published)(
-        "published_at", published_at)("levels", levels)("frame", frame)("tree", tree);
+        "accepted", accepted)("ended", ended)("node", node)("status", status)(
+        "requester", requester)("before", before)("refusal", refusal)("refusal_code", refusal_code)(
+        "published", published)("published_at", published_at)("levels", levels)("tree", tree);
   }
 };
 
@@ -67,9 +70,9 @@ struct Work {
   std::uint32_t last_intention = 0;  ///< the newest number
   std::map<GoalId, GoalEntry> goals{};
   std::vector<Belief> beliefs{};
-  v1::StopId heeds{};             ///< the newest stop that has ended goals
-  bool placed = false;            ///< it was known where the robot is on the map
-  std::optional<GoalId> ended{};  ///< the newest ending: a list without it has lost its end
+  std::optional<v1::StopId> heeds{};  ///< Stops::heeds()
+  bool placed = false;                ///< it was known where the robot is on the map
+  std::optional<GoalId> ended{};      ///< the newest ending: a list without it has lost its end
 
   bool operator==(const Work&) const = default;
 };

@@ -34,6 +34,9 @@ class Value;
 /// the service began.
 using Ticks = std::int64_t;
 inline constexpr double kTick = 0.1;  ///< [s]
+constexpr double in_seconds(Ticks ticks) {
+  return kTick * static_cast<double>(ticks);
+}
 
 /// The robot's state in a cycle.
 struct Robot {

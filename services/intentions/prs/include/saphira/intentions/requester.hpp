@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "saphira/idl/intention.hpp"
+#include "saphira/intentions/world.hpp"
+
+namespace saphira::intentions {
+
+/// The program that asked for a goal, and the effect of its silence on the goal.
+///
+///     state       its cause                      a goal that ends with it  a goal that is to be
+///     kept heard       the program wrote the goal     goes on                   goes on cut off
+///     its writer is gone             waits, ends after 10 s    goes on recalled    the service was
+///     restarted      waits, ends after 10 min  waits, goes on after 3 s switched on the bridge was
+///     as well         waits, ends after 10 min  waits, ends after 3 s left        nobody asks for
+///     a kept goal    goes on                   goes on
+///
+/// A goal that waits goes on when its program is heard.
+class Requester {
+ public:
+  /// A cut network is back by then.
+  static constexpr Ticks kCutOff = 100;
+  /// After a restart of the service the programs that are there, and their withdrawals, have been
+  /// heard by then. The first step may be of ten.
+  static constexpr Ticks kMeeting = 30;
+  /// Programs that were restarted as well have been heard by then.
+  static constexpr Ticks kRecalled = 6000;
+
+  void hear() { state_ = State::kHeard; }
+  void cut_off(Ticks now);
+  /// The service was restarted, and has the goal from before.
+  void recall(Ticks now);
+  /// The bridge was started again: a robot does not set out by itself once it is switched on.
+  void meet_bridge();
+
+  /// The goal is not told of: its program is probably heard in a moment.
+  bool is_meeting(Ticks now) const;
+  /// The reason why the goal waits; empty: it does not.
+  std::string why_to_wait(v1::WriterLost policy) const;
+
+  enum class Turn : std::uint8_t { kNone, kKept, kEnds };
+  /// The turn of the goal at that time: kKept once, where it goes on without its program.
+  Turn pass(v1::WriterLost policy, Ticks now);
+  /// The reason for kEnds.
+  std::string why_ended(v1::WriterLost policy) const;
+
+  bool operator==(const Requester&) const = default;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a("state", state_)("since", since_);
+  }
+
+ private:
+  enum class State : std::uint8_t { kHeard, kCutOff, kRecalled, kSwitchedOn, kLeft };
+
+  Ticks patience(v1::WriterLost policy) const;
+
+  State state_ = State::kHeard;
+  Ticks since_ = 0;
+};
+
+}  // namespace saphira::intentions
