@@ -28,6 +28,8 @@ constexpr unsigned short kLongestHeaders =
 
 int readable(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
              std::size_t /*size*/) {
+  if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION)
+    return -1;  // a client may name this protocol, too
   auto* const call = static_cast<std::function<void()>*>(lws_get_opaque_user_data(wsi));
   if (reason == LWS_CALLBACK_RAW_RX_FILE && call != nullptr)
     (*call)();
@@ -235,6 +237,9 @@ lws_vhost* Loop::listen(lws_context_creation_info info, const Place& place) {
 }
 
 int Loop::otherwise(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
+  // A WebSocket without a protocol comes to the first one.
+  if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION)
+    return -1;
   if (reason != LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS)
     return lws_callback_http_dummy(wsi, reason, user, in, size);
   SSL_CTX_set_cert_cb(static_cast<SSL_CTX*>(user), Certificate::serve,

@@ -226,7 +226,7 @@ int HttpServer::http(lws* wsi, lws_callback_reasons reason, void* user, void* in
         self().closed(connection->exchange);
       return 0;
     default:
-      return lws_callback_http_dummy(wsi, reason, user, in, size);
+      return web::Loop::otherwise(wsi, reason, user, in, size);
   }
 }
 
