@@ -229,10 +229,19 @@ void Supervisor::take_over(const std::string& children) {
   std::string line;
   if (!std::getline(in, line) || line != kHandedOver)
     throw std::invalid_argument("the previous version has handed over another format");
-  std::string name;
-  Slot taken;
-  int output = -1;
-  while (in >> name >> taken.pid >> taken.starts >> output >> taken.beats >> taken.file) {
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    std::string name;
+    std::string more;
+    Slot taken;
+    int output = -1;
+    // No file: it was gone when the child was started.
+    if (!(words >> name >> taken.pid >> taken.starts >> output >> taken.beats) ||
+        !(words >> taken.file || words.eof()) || words >> more)
+      throw std::invalid_argument(
+          "the previous version has handed over another format: expected "
+          "a name without blanks, four numbers and a file, found \"" +
+          line + "\"");
     const auto slot = std::ranges::find_if(
         slots_, [&](const Slot& one) { return one.spec.name == name && one.pid == 0; });
     for (const int fd : {output, taken.beats})
