@@ -30,7 +30,7 @@ void prune(const std::string& folder) {
   std::error_code none;
   std::vector<fs::path> files;
   for (const auto& file : fs::directory_iterator(folder, none))
-    if (file.path().extension() == ".mcap")
+    if (file.path().extension() == ".mcap" || file.path().extension() == ".new")  // not ended
       files.push_back(file.path());
   std::ranges::sort(files, std::greater<>());
   std::uintmax_t bytes = 0;
