@@ -365,6 +365,11 @@ const std::vector<std::string> kNoProtocols{"", "Sec-WebSocket-Protocol: descrip
                                             "Sec-WebSocket-Protocol: other\r\n"};
 /// Each of them is refused.
 void expect_no_socket(int port, const std::string& path = "/") {
+  EXPECT_EQ(answer(port, {"GET " + path +
+                          " HTTP/1.1\r\nHost: localhost\r\nUpgrade: h2c\r\nConnection: Upgrade, "
+                          "HTTP2-Settings\r\nHTTP2-Settings: AAMAAABkAAQAAP__\r\n\r\n"}),
+            "")
+      << "HTTP/2";
   for (const std::string& protocol : kNoProtocols)
     EXPECT_EQ(answer(port, {upgrade(path, "Host: localhost\r\n" + protocol)}, "\r\n\r\n"), "")
         << protocol;
