@@ -191,7 +191,7 @@ class Echo {
                               request.method + " " + request.path + " " + request.caller.host +
                                   " " + std::to_string(request.body.size()) + " " +
                                   request.body.substr(0, 20) +
-                                  (request.caller.loopback ? "" : "by a proxy"));
+                                  (request.caller.loopback ? "" : "by a proxy") + request.mcp_name);
             },
             [](auto) {}, [] {}, [] {}};
   }
@@ -212,6 +212,20 @@ TEST(Servers, ABodyMayComeInChunks) {
     pieces.emplace_back(1, byte);
   EXPECT_TRUE(has(answer(echo.port(), pieces), "POST /a/mcp robot 12 hello, world"));
   EXPECT_EQ(answer(echo.port(), {head + "hello\r\n"}), "");
+}
+
+TEST(Servers, AHeaderThatIsNotAsciiComesAsBase64) {
+  Echo echo;
+  const auto named = [&](const std::string& name) {
+    const std::string all = answer(
+        echo.port(), {"GET /mcp HTTP/1.1\r\nHost: localhost\r\nMcp-Name: " + name + "\r\n\r\n"});
+    return all.substr(all.find("localhost 0 ") + 12);
+  };
+  EXPECT_EQ(named("go"), "go");
+  EXPECT_EQ(named("=?base64?S8O8Y2hl?="), "Küche");
+  EXPECT_EQ(named("=?base64?Z28=?="), "go");
+  EXPECT_EQ(named("=?base64?no base64?="), "");
+  EXPECT_EQ(named("=?base64?="), "=?base64?=");
 }
 
 TEST(Servers, ABodyMayBeLongerThan64Kilobytes) {
