@@ -12,13 +12,13 @@ class Held {
   /// std::invalid_argument where another recorder writes it, or where something is there that would
   /// be lost.
   Held(const std::string& file, bool overwrite);
-  /// Nothing stays of what has not taken its place.
+  /// A new recording that has not taken its place is removed.
   ~Held();
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
 
   std::ostream& out() { return out_; }
-  /// What is written takes its place, once. std::runtime_error where it cannot.
+  /// The written part takes its place, once. std::runtime_error where it cannot.
   void keep();
 
  private:
