@@ -191,17 +191,17 @@ template <class T>
 void from_python(py::handle given, std::vector<T>& items, py::handle type) {
   if (!PySequence_Check(given.ptr()) || PyUnicode_Check(given.ptr()))
     misfit("a list", given);
-  const auto list = py::reinterpret_steal<py::object>(PySequence_Fast(given.ptr(), ""));
+  // A tuple stays as it is, whatever the program does when its items are read.
+  const py::object list = checked(PySequence_Tuple(given.ptr()));
   const bool is_bytes = std::is_same_v<T, std::uint8_t>;
   const py::object item_type =
       is_bytes ? py::object() : py::object(type.attr("__args__")[py::int_(0)]);
-  const auto count = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(list.ptr()));
+  const auto count = static_cast<std::size_t>(PyTuple_GET_SIZE(list.ptr()));
   items.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     T item{};
     try {
-      from_python(PySequence_Fast_GET_ITEM(list.ptr(), static_cast<Py_ssize_t>(i)), item,
-                  item_type);
+      from_python(PyTuple_GET_ITEM(list.ptr(), static_cast<Py_ssize_t>(i)), item, item_type);
     } catch (Misfit& wrong) {
       wrong.place = "[" + std::to_string(i) + "]" + (wrong.place.empty() ? "" : ".") + wrong.place;
       throw;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdlib>
 #include <iterator>
@@ -46,6 +47,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPollPeriod{100};  ///< how often a wait looks for signals
 constexpr milliseconds kRepeat{20};       ///< between looks at requests that are not heard
 constexpr milliseconds kLeave{1000};      ///< for these, until the bus is left
+constexpr double kForever = 1e9;          ///< [s] and more would not fit a clock
 
 /// The parts that live with the node.
 struct Parts {
@@ -210,7 +212,9 @@ class Bus {
   /// False: nothing has come for so long [s]. Signals are handled meanwhile.
   bool wait(double seconds) {
     bus::Node& own = node();
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    // fmin, fmax: no number is none.
+    const double bounded = std::fmin(std::fmax(seconds, 0.0), kForever);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(bounded);
     for (;;) {
       const auto left = std::chrono::ceil<milliseconds>(end - std::chrono::steady_clock::now());
       const bool came = unlocked(

@@ -4,6 +4,7 @@
 #include <net/if.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
@@ -28,6 +29,8 @@ constexpr unsigned short kLongestHeaders =
 
 int readable(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
              std::size_t /*size*/) {
+  if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION)
+    return -1;  // a client may name this protocol, too
   auto* const call = static_cast<std::function<void()>*>(lws_get_opaque_user_data(wsi));
   if (reason == LWS_CALLBACK_RAW_RX_FILE && call != nullptr)
     (*call)();
@@ -221,6 +224,7 @@ lws_vhost* Loop::listen(lws_context_creation_info info, const Place& place) {
   info.iface =
       place.address == "0.0.0.0" ? nullptr : addresses_.emplace_back(place.address).c_str();
   info.port = place.port;
+  info.alpn = "http/1.1";  // with HTTP/2, a browser has other headers and WebSockets
   if (!place.certificate.empty()) {
     info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
     info.ssl_cert_filepath = place.certificate.c_str();
@@ -235,6 +239,12 @@ lws_vhost* Loop::listen(lws_context_creation_info info, const Place& place) {
 }
 
 int Loop::otherwise(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
+  // A WebSocket without a protocol comes to the first one.
+  if (reason == LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION)
+    return -1;
+  // With HTTP/2 a connection has many requests, and lasts as long as the client wants.
+  if (reason == LWS_CALLBACK_HTTP_CONFIRM_UPGRADE)
+    return strcasecmp(static_cast<const char*>(in), "websocket") == 0 ? 0 : -1;
   if (reason != LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS)
     return lws_callback_http_dummy(wsi, reason, user, in, size);
   SSL_CTX_set_cert_cb(static_cast<SSL_CTX*>(user), Certificate::serve,

@@ -84,7 +84,7 @@ class Loop {
   /// Runs until `stop` is readable. std::runtime_error where the loop fails.
   void run(lws_vhost* vhost, int stop);
 
-  /// The rest of the callback of a server's first protocol.
+  /// The rest of the callback of a server's first protocol, which takes no WebSocket.
   static int otherwise(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                        std::size_t size);
   /// The protocol of watched descriptors.

@@ -33,7 +33,6 @@ lws_vhost* Sockets::listen(const char* name, const Place& place) {
   info.keepalive_timeout = 5;
   info.retry_and_idle_policy = &patience;
   info.vhost_name = name;
-  info.alpn = "http/1.1";  // with HTTP/2, a browser has other headers and WebSockets
   lws_vhost* const vhost = loop_.listen(info, place);
   if (vhost_ == nullptr)
     vhost_ = vhost;

@@ -61,6 +61,12 @@ std::string memory_file(const std::filesystem::path& folder) {
   return memory_folder(getuid()) + "/" + folder.filename().string();
 }
 
+/// True where the file and the folder around it have the same owner: nobody else has put it there.
+bool is_of_folder(int file, const std::filesystem::path& folder) {
+  struct stat info {};
+  return fstat(file, &info) == 0 && S_ISREG(info.st_mode) && is_folder_of(info.st_uid, folder);
+}
+
 /// In the user's home, which several machines may share; empty: there is none to write to.
 std::string folder_in_home() {
   const char* const state = std::getenv("XDG_STATE_HOME");
@@ -99,7 +105,10 @@ std::string own_folder() {
 /// The folders of this user's deployments. One that was started without a home is in the second
 /// folder. Nothing is made, so that a stop needs no room on the disk.
 std::set<std::string> own_folders() {
-  return {chosen_folder(), temporary_folder()};
+  std::set<std::string> folders{chosen_folder(), temporary_folder()};
+  if (!is_folder_of(getuid(), temporary_folder()))
+    folders.erase(temporary_folder());  // another user's
+  return folders;
 }
 
 /// Those, and where others on this machine may be, with what they keep in memory.
@@ -172,7 +181,8 @@ RunFolder::RunFolder() {
     path_ = folder + "/temporary-XXXXXX";
     return mkdtemp(path_.data()) != nullptr;
   };
-  if (made(chosen_folder()) || (make_own(chosen_folder()), made(chosen_folder())))
+  if ((is_folder_of(getuid(), chosen_folder()) && made(chosen_folder())) ||
+      (make_own(chosen_folder()), made(chosen_folder())))
     return;
   const std::string trouble = cannot_be(path_, "made") + kElsewhere;
   make_own(memory_folder(getuid()));
@@ -228,17 +238,23 @@ std::vector<Running> running_deployments() {
   for (const std::string& folder : own_folders())
     for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
       const std::string path = entry.path() / "lock";
-      if (!std::filesystem::exists(path, none))
+      const int file = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+      if (file < 0)
         continue;
+      if (!is_folder_of(getuid(), entry.path()) || !is_of_folder(file, entry.path())) {
+        close(file);
+        continue;
+      }
       // A free lock means that no process runs it.
-      const int file = lock(path);
-      if (file >= 0) {
-        unlock(file);
+      if (const int free = lock_open(file); free >= 0) {
+        unlock(free);
         continue;
       }
       Running running{entry.path().filename(), 0, {}, 0};
       std::error_code gone;
       const bool told = std::filesystem::file_size(path, gone) > 0;
+      if (!told && !is_folder_of(getuid(), memory_folder(getuid())))
+        continue;
       std::ifstream in(told ? path : memory_file(entry.path()));
       in >> running.pid >> running.domain >> std::ws;
       std::getline(in, running.robot);
@@ -289,9 +305,13 @@ std::vector<RunningBus> running_buses() {
   for (const std::string& folder : all_folders())
     for (const auto& entry : std::filesystem::directory_iterator(folder + "/buses", none)) {
       const std::string path = entry.path();
-      const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+      const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
       if (file < 0)
         continue;
+      if (!is_of_folder(file, folder + "/buses")) {
+        close(file);
+        continue;
+      }
       std::string text;
       std::getline(std::ifstream(path), text);
       // The owner writes after it has locked. A free lock belongs to a killed program.

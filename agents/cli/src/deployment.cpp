@@ -216,6 +216,10 @@ class Parser {
       if (made.name.starts_with("saphira-"))
         made.name.erase(0, std::string("saphira-").size());
     }
+    if (std::ranges::any_of(made.name,
+                            [](unsigned char each) { return each == '/' || each <= ' '; }))
+      fail(node.Mark(),
+           "expected name: ONE-WORD, without / and blanks, found \"" + made.name + "\"");
     for (const Program& other : deployment_.programs)
       if (other.name == made.name)
         fail(node.Mark(), "the name \"" + made.name + "\" is there already: expected name: OTHER");

@@ -52,18 +52,6 @@ std::string describe_end(int status) {
   return "killed by SIG" + std::string(name == nullptr ? std::to_string(number).c_str() : name);
 }
 
-std::vector<std::string> merged_environment(const std::map<std::string, std::string>& added) {
-  std::vector<std::string> all;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string text = *entry;
-    if (!added.contains(text.substr(0, text.find('='))))
-      all.push_back(text);
-  }
-  for (const auto& [name, value] : added)
-    all.emplace_back(name).append("=").append(value);
-  return all;
-}
-
 milliseconds until(Supervisor::Clock::time_point when) {
   return std::max(milliseconds(0),
                   std::chrono::ceil<milliseconds>(when - Supervisor::Clock::now()));
@@ -112,6 +100,18 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
   for (std::string& word : words)
     all.push_back(word.data());
   all.push_back(nullptr);
+  return all;
+}
+
+std::vector<std::string> merged_environment(const std::map<std::string, std::string>& added) {
+  std::vector<std::string> all;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    if (!added.contains(text.substr(0, text.find('='))))
+      all.push_back(text);
+  }
+  for (const auto& [name, value] : added)
+    all.emplace_back(name).append("=").append(value);
   return all;
 }
 
@@ -229,10 +229,19 @@ void Supervisor::take_over(const std::string& children) {
   std::string line;
   if (!std::getline(in, line) || line != kHandedOver)
     throw std::invalid_argument("the previous version has handed over another format");
-  std::string name;
-  Slot taken;
-  int output = -1;
-  while (in >> name >> taken.pid >> taken.starts >> output >> taken.beats >> taken.file) {
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    std::string name;
+    std::string more;
+    Slot taken;
+    int output = -1;
+    // No file: it was gone when the child was started.
+    if (!(words >> name >> taken.pid >> taken.starts >> output >> taken.beats) ||
+        !(words >> taken.file || words.eof()) || words >> more)
+      throw std::invalid_argument(
+          "the previous version has handed over another format: expected "
+          "a name without blanks, four numbers and a file, found \"" +
+          line + "\"");
     const auto slot = std::ranges::find_if(
         slots_, [&](const Slot& one) { return one.spec.name == name && one.pid == 0; });
     for (const int fd : {output, taken.beats})

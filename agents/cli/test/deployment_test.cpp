@@ -153,7 +153,7 @@ TEST(Deployments, AMistakeIsNamedWithItsPlaceAndWhatWasExpected) {
       test::each_mistake("agents/cli/test/deployments.txt", [](const std::string& text) {
         command_lines(parse_deployment(text, "broken.yaml"), {"/nowhere", "/conf", "/run"});
       });
-  EXPECT_EQ(cases, 29);
+  EXPECT_EQ(cases, 33);
 }
 
 TEST(FindDeployment, NamesWhatThereIs) {

@@ -182,6 +182,11 @@ TEST_F(SupervisorTest, HandsItsChildrenOver) {
   EXPECT_NE(kill(a, 0), 0);
   Supervisor odd({shell("a", "exec sleep 1000")}, keep());
   EXPECT_THROW(odd.take_over("children 2\n"), std::invalid_argument);
+  for (const char* child :
+       {"my agent 1 1 -1 -1 file", "a", "a 1 1 -1", "a 1 1 -1 -1 file more", ""})
+    EXPECT_THROW(odd.take_over(std::string("children 1\n") + child + "\n"), std::invalid_argument)
+        << child;
+  EXPECT_EQ(odd.children().at(0).pid, 0) << "none is taken, and none is started";
 }
 
 TEST_F(SupervisorTest, DoesNotStartAgainWhatIsMisused) {

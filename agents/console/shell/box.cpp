@@ -13,6 +13,7 @@
 #include "environment.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/cli/supervisor.hpp"
 
 namespace saphira::console {
 
@@ -30,7 +31,7 @@ void prune(const std::string& folder) {
   std::error_code none;
   std::vector<fs::path> files;
   for (const auto& file : fs::directory_iterator(folder, none))
-    if (file.path().extension() == ".mcap")
+    if (file.path().extension() == ".mcap" || file.path().extension() == ".new")  // not ended
       files.push_back(file.path());
   std::ranges::sort(files, std::greater<>());
   std::uintmax_t bytes = 0;
@@ -66,21 +67,11 @@ void Box::start() {
   std::error_code none;
   fs::create_directories(folder_, none);
   std::vector<std::string> words{program_folder() + "/saphira-record", "--last-minute", file_};
-  std::vector<std::string> variables;
-  for (const auto& [name, value] : cli::as_environment(options_))
-    if (!value.empty())
-      variables.push_back(name + "=" + value);
-  for (char** variable = environ; *variable != nullptr; ++variable)
-    variables.emplace_back(*variable);
-  const auto pointers = [](std::vector<std::string>& texts) {
-    std::vector<char*> all;
-    for (std::string& text : texts)
-      all.push_back(text.data());
-    all.push_back(nullptr);
-    return all;
-  };
-  if (::posix_spawn(&recorder_, words[0].c_str(), nullptr, nullptr, pointers(words).data(),
-                    pointers(variables).data()) != 0)
+  auto own = cli::as_environment(options_);
+  std::erase_if(own, [](const auto& variable) { return variable.second.empty(); });
+  std::vector<std::string> variables = cli::merged_environment(own);
+  if (::posix_spawn(&recorder_, words[0].c_str(), nullptr, nullptr, cli::pointers(words).data(),
+                    cli::pointers(variables).data()) != 0)
     recorder_ = -1;
 }
 

@@ -9,14 +9,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/base64.hpp"
+
 namespace saphira::mcp {
 
 namespace {
 
 constexpr unsigned kMostDescriptors = 1024;
-constexpr int kTick = 50'000;         // [us]
-constexpr int kTicksOfSilence = 100;  // then a stream sends a sign of life
-constexpr std::size_t kLongestHeader = 1024;
+constexpr int kTick = 50'000;                       // [us]
+constexpr int kTicksOfSilence = 100;                // then a stream sends a sign of life
 constexpr std::size_t kLongestQueue = 1024 * 1024;  // of a client that does not read
 constexpr int kUnauthorized = 401;
 constexpr const char* kSign = ": \r\n";  // of life, in a stream
@@ -25,13 +26,10 @@ using web::header;
 
 /// Text that is not ASCII comes as =?base64?...?=.
 std::string decoded_header(lws* wsi, const char* name) {
-  std::string value = web::custom_header(wsi, name);
+  const std::string value = web::custom_header(wsi, name);
   if (!value.starts_with("=?base64?") || !value.ends_with("?=") || value.size() < 11)
     return value;
-  std::array<char, kLongestHeader> decoded{};
-  const int size = lws_b64_decode_string(value.substr(9, value.size() - 11).c_str(), decoded.data(),
-                                         static_cast<int>(decoded.size()));
-  return size > 0 ? std::string(decoded.data(), static_cast<std::size_t>(size)) : std::string();
+  return from_base64(value.substr(9, value.size() - 11)).value_or("");
 }
 
 /// The system asks the client's side every second for a sign of life, as silence() promises.
@@ -226,7 +224,7 @@ int HttpServer::http(lws* wsi, lws_callback_reasons reason, void* user, void* in
         self().closed(connection->exchange);
       return 0;
     default:
-      return lws_callback_http_dummy(wsi, reason, user, in, size);
+      return web::Loop::otherwise(wsi, reason, user, in, size);
   }
 }
 

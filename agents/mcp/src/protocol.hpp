@@ -16,9 +16,10 @@ inline const std::string kTasks = "io.modelcontextprotocol/tasks";
 inline const std::string kResources = "saphira://robot/";
 
 /// Null where the object has no such member.
-inline Json member(const Json& object, const std::string& name) {
+inline const Json& member(const Json& object, const std::string& name) {
+  static const Json none;
   const auto found = object.is_object() ? object.find(name) : object.end();
-  return found == object.end() ? Json() : *found;
+  return found == object.end() ? none : *found;
 }
 
 /// The usual jobs, as prompts that a person picks in the client: the answer to prompts/list.

@@ -44,6 +44,22 @@ bool is_task_method(const std::string& method) {
   return method == "tasks/get" || method == "tasks/cancel" || method == "tasks/update";
 }
 
+struct Parsed {
+  Json json;          ///< discarded: it is none
+  bool deep = false;  ///< for it is nested too deeply for copies, which are recursive
+};
+Parsed parsed(std::string_view text) {
+  Parsed parsed;
+  parsed.json = Json::parse(
+      text.begin(), text.end(),
+      [&parsed](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
+        parsed.deep = parsed.deep || depth > static_cast<int>(kDeepest);
+        return !parsed.deep;
+      },
+      false);
+  return parsed;
+}
+
 Json describe(const Tool& tool, bool structured) {
   Json json{{"name", tool.name},
             {"description", tool.description},
@@ -61,21 +77,21 @@ Sender sender_of(std::string_view message) {
   Sender sender;
   if (message.size() > Session::kLongestLine)
     return sender;
-  const Json json = Json::parse(message.begin(), message.end(), nullptr, false);
+  const Json json = parsed(message).json;
   sender.answers = is_answer(json) || (json.is_array() && std::ranges::any_of(json, is_answer));
   if (!json.is_object())
     return sender;
-  const Json parameters = member(json, "params");
-  const Json meta = member(parameters, "_meta");
+  const Json& parameters = member(json, "params");
+  const Json& meta = member(parameters, "_meta");
   sender.begins = member(json, "method") == "initialize";
   sender.modern = meta.is_object() && meta.contains(kMeta + "protocolVersion");
-  const Json info =
+  const Json& info =
       sender.begins ? member(parameters, "clientInfo") : member(meta, kMeta + "clientInfo");
   if (sender.modern)
     sender.client = info.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (const Json name = member(info, "name"); name.is_string())
+  if (const Json& name = member(info, "name"); name.is_string())
     sender.name = one_line(std::string(first_letters(name.get<std::string>(), kLongestName)));
-  if (const Json tool = member(parameters, "name");
+  if (const Json& tool = member(parameters, "name");
       member(json, "method") == "tools/call" && tool.is_string())
     sender.tool = tool.get<std::string>();
   return sender;
@@ -266,14 +282,7 @@ bool Session::take(std::string_view text, std::uint64_t exchange, const Headers*
   };
   if (text.size() > kLongestLine)
     return wrong(kBadRequest, "a message has at most " + std::to_string(kLongestLine) + " bytes");
-  bool deep = false;
-  const Json message = Json::parse(
-      text.begin(), text.end(),
-      [&deep](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
-        deep = deep || depth > static_cast<int>(kDeepest);
-        return !deep;
-      },
-      false);
+  const auto [message, deep] = parsed(text);
   if (message.is_discarded() || deep)
     return wrong(kParseError,
                  deep ? "nested too deeply"

@@ -117,6 +117,25 @@ TEST(McpSession, ASenderIsKnownByWhatItSays) {
   }
 }
 
+TEST(McpSession, NestingIsBoundedBeforeAnythingIsReadFromAMessage) {
+  for (const char* bracket : {"[", "{\"a\":"})
+    for (const char* end : {"", "1"}) {
+      std::string text = R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":)";
+      for (int i = 0; i < 100'000; ++i)
+        text += bracket;
+      text += end;
+      EXPECT_EQ(sender_of(text), Sender()) << bracket;
+      Client client;
+      EXPECT_EQ(client.one(text)["error"]["message"], "nested too deeply") << bracket;
+    }
+  const auto nested = [](int depth) {
+    return R"({"method":"initialize","params":)" + std::string(depth, '[') +
+           std::string(depth, ']') + "}";
+  };
+  EXPECT_TRUE(sender_of(nested(15)).begins);
+  EXPECT_FALSE(sender_of(nested(100'000)).begins);
+}
+
 TEST(McpSession, AClientHasTheNameThatItGivesOnOneLine) {
   const auto name_of = [](const Json& name) {
     return sender_of(line(1, "initialize", {{"clientInfo", {{"name", name}}}})).name;

@@ -55,6 +55,31 @@ def test_each_type_comes_back_unchanged(type_: Any, extreme: int) -> None:
     assert _bus.there_and_back(empty) == empty
 
 
+def test_a_list_that_breaks_is_an_exception() -> None:
+    class Broken:
+        def __len__(self) -> int:
+            return 2
+
+        def __getitem__(self, index: int) -> v1.Argument:
+            raise LookupError("broken")
+
+    with pytest.raises(LookupError, match="broken"):
+        _bus.there_and_back(v1.Goal(arguments=Broken()))  # type: ignore[arg-type]
+
+
+def test_a_list_that_changes_while_it_is_read_is_read_as_it_was() -> None:
+    arguments: list[v1.Argument] = []
+
+    class Clearing(v1.Argument):
+        def __getattribute__(self, name: str) -> Any:
+            arguments.clear()
+            return super().__getattribute__(name)
+
+    arguments += [Clearing("a"), v1.Argument("b"), v1.Argument("c")]
+    back = _bus.there_and_back(v1.Goal(arguments=arguments))
+    assert [each.name for each in back.arguments] == ["a", "b", "c"]
+
+
 def test_whole_numbers_keep_their_limits() -> None:
     state = v1.RobotState(ptu=2**16 - 1, say=255, bad_packets=2**32 - 1)
     state.stamp.epoch = 2**64 - 1

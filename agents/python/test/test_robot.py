@@ -1,17 +1,19 @@
 """Programs that watch the simulated robot, send it and ask."""
 
 import asyncio
+import math
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 import saphira
 from conftest import until
-from saphira import topics, v1
+from saphira import _bus, topics, v1
 
 
 def status_of(robot: saphira.Robot, id: v1.GoalId) -> v1.GoalStatus:
@@ -20,6 +22,27 @@ def status_of(robot: saphira.Robot, id: v1.GoalId) -> v1.GoalStatus:
         if status.id == id and status.state > v1.GoalState.GOAL_SUSPENDED:
             return status
     raise AssertionError
+
+
+def test_a_wait_may_be_endless_and_ends_with_a_signal(bus: Path) -> None:
+    class Rung(Exception):
+        pass
+
+    def ring(number: int, frame: object) -> None:
+        raise Rung
+
+    own = _bus.Bus("waits", None, None, None, [], None, "")
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, 0.3)
+    try:
+        with pytest.raises(Rung):
+            while own.wait(math.inf):
+                own.poll()
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    own.wait(-math.inf)
+    own.wait(math.nan)
+    own.close()
 
 
 def test_goes_to_a_place_with_progress(robot: saphira.Robot) -> None:

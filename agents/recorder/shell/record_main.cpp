@@ -1,16 +1,14 @@
 // Records the bus as an MCAP file. README.md.
-#include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "held.hpp"
 #include "last_minute.hpp"
 #include "recorder.hpp"
 #include "saphira/base/boot_clock.hpp"
@@ -40,41 +38,7 @@ std::string usual_name(const std::string& robot) {
   return robot + local_text(std::time(nullptr), "-%Y-%m-%d-%H%M%S.mcap");
 }
 
-/// Holds the name of a recording, so that no second recorder writes there. std::invalid_argument
-/// where another one does, or where something is there that would be lost.
-class Held {
- public:
-  Held(const std::string& file, bool overwrite) {
-    if (!file.ends_with(".mcap"))
-      throw std::invalid_argument(
-          file + ": expected a name that ends with .mcap, the kind of file that this writes");
-    fd_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (fd_ < 0)
-      throw std::invalid_argument(cannot_be(file, "written"));
-    if (flock(fd_, LOCK_EX | LOCK_NB) != 0)
-      throw std::invalid_argument(file + ": another recorder writes it; give a new name");
-    std::error_code none;
-    if (std::filesystem::file_size(file, none) == 0)
-      return;
-    try {
-      std::ifstream in(file, std::ios::binary);
-      recorder::Reader begins(in);
-    } catch (const std::invalid_argument&) {
-      throw std::invalid_argument(
-          file + ": a file with other content is there; give a new name, such as NAME.mcap");
-    }
-    if (!overwrite)
-      throw std::invalid_argument(file + ": a recording is there; give a new name, or --overwrite");
-  }
-  ~Held() { close(fd_); }
-  Held(const Held&) = delete;
-  Held& operator=(const Held&) = delete;
-
- private:
-  int fd_ = -1;
-};
-
-int keep_last_minute(bus::Node& node, std::ofstream& out, const std::string& file,
+int keep_last_minute(bus::Node& node, recorder::Held& held, const std::string& file,
                      const bus::Stop& stop) {
   // The robot and its people come first.
   (void)!nice(10);
@@ -85,15 +49,14 @@ int keep_last_minute(bus::Node& node, std::ofstream& out, const std::string& fil
     node.publish_status();
     minute.poll(unix_nanoseconds());
   }
-  recorder::Writer writer(out);
+  recorder::Writer writer(held.out());
   if (!minute.write(node, writer)) {
     std::fprintf(stderr, "saphira: no robot is heard; saphira status shows which programs run\n");
-    out.close();
-    std::filesystem::remove(file);
     return bus::kExitFailed;
   }
   if (!writer.close())
     fail_to_be(file, "written");
+  held.keep();
   std::printf("%s\n", file.c_str());
   return bus::kExitOk;
 }
@@ -101,15 +64,12 @@ int keep_last_minute(bus::Node& node, std::ofstream& out, const std::string& fil
 int record(const bus::NodeOptions& node_options, const Options& options, const bus::Stop& stop) {
   const std::string file = options.file.empty() ? usual_name(node_options.robot) : options.file;
   const auto topics = recorder::recorded_topics(options.topics);
-  const Held held(file, options.overwrite);
-  std::ofstream out(file, std::ios::binary);
-  if (!out)
-    fail_to_be(file, "written");
+  recorder::Held held(file, options.overwrite);
   bus::Node node(node_options);
   node.status().state = v1::SERVICE_RUNNING;
   if (options.last_minute)
-    return keep_last_minute(node, out, file, stop);
-  recorder::Writer writer(out);
+    return keep_last_minute(node, held, file, stop);
+  recorder::Writer writer(held.out());
   recorder::Recorder recorder(node, writer, topics);
   for (const std::string& topic : recorder.refused())
     std::fprintf(stderr, "saphira: not recorded: %s\n", topic.c_str());
@@ -127,11 +87,15 @@ int record(const bus::NodeOptions& node_options, const Options& options, const b
       flushed = Clock::now();
       if (!writer.flush())
         fail_to_be(file, "written");
+      if (recorder.has_heard())
+        held.keep();
     }
   }
   recorder.poll(unix_nanoseconds());
   if (!writer.close())
     fail_to_be(file, "written");
+  if (recorder.has_heard())
+    held.keep();
   const std::chrono::duration<double> lasted = Clock::now() - began;
   std::fprintf(stderr, "%llu samples in %.0f s, %.1f MB\n",
                static_cast<unsigned long long>(writer.samples()), lasted.count(),

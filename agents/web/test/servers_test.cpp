@@ -191,7 +191,7 @@ class Echo {
                               request.method + " " + request.path + " " + request.caller.host +
                                   " " + std::to_string(request.body.size()) + " " +
                                   request.body.substr(0, 20) +
-                                  (request.caller.loopback ? "" : "by a proxy"));
+                                  (request.caller.loopback ? "" : "by a proxy") + request.mcp_name);
             },
             [](auto) {}, [] {}, [] {}};
   }
@@ -212,6 +212,20 @@ TEST(Servers, ABodyMayComeInChunks) {
     pieces.emplace_back(1, byte);
   EXPECT_TRUE(has(answer(echo.port(), pieces), "POST /a/mcp robot 12 hello, world"));
   EXPECT_EQ(answer(echo.port(), {head + "hello\r\n"}), "");
+}
+
+TEST(Servers, AHeaderThatIsNotAsciiComesAsBase64) {
+  Echo echo;
+  const auto named = [&](const std::string& name) {
+    const std::string all = answer(
+        echo.port(), {"GET /mcp HTTP/1.1\r\nHost: localhost\r\nMcp-Name: " + name + "\r\n\r\n"});
+    return all.substr(all.find("localhost 0 ") + 12);
+  };
+  EXPECT_EQ(named("go"), "go");
+  EXPECT_EQ(named("=?base64?S8O8Y2hl?="), "Küche");
+  EXPECT_EQ(named("=?base64?Z28=?="), "go");
+  EXPECT_EQ(named("=?base64?no base64?="), "");
+  EXPECT_EQ(named("=?base64?="), "=?base64?=");
 }
 
 TEST(Servers, ABodyMayBeLongerThan64Kilobytes) {
@@ -247,6 +261,14 @@ TEST(Servers, AProxyThatSaysNothingSpeaksHttp10) {
                   .ends_with("GET /mcp localhost 0 by a proxy"));
 }
 
+/// A request for a WebSocket; its headers end with `more`.
+std::string upgrade(const std::string& path, const std::string& more) {
+  return "GET " + path +
+         " HTTP/1.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+         "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n" +
+         more + "\r\n";
+}
+
 /// A console with a page, which notes its callers.
 class Console {
  public:
@@ -258,13 +280,10 @@ class Console {
   }
   /// The caller of a WebSocket; nothing: it was refused.
   std::optional<console::Caller> open(const std::string& headers) {
-    const std::string told =
-        answer(port(),
-               {"GET /under/a/path/ HTTP/1.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n"
-                "Sec-WebSocket-Protocol: saphira.telemetry\r\n" +
-                headers + "\r\n"},
-               "\r\n\r\n");
+    const std::string told = answer(
+        port(),
+        {upgrade("/under/a/path/", "Sec-WebSocket-Protocol: saphira.telemetry\r\n" + headers)},
+        "\r\n\r\n");
     std::unique_lock lock(mutex_);
     if (!has(told, " 101 "))
       return std::nullopt;
@@ -352,6 +371,42 @@ TEST(Servers, WhoComesByAProxyIsNotOfThisMachine) {
   }
   EXPECT_FALSE(console.open(host + "Origin: https://other.example\r\n"));
   EXPECT_TRUE(console.open(host + "Origin: https://robot.example:8443\r\n"));
+}
+
+/// No protocol, and those that no client may ask for.
+const std::vector<std::string> kNoProtocols{"", "Sec-WebSocket-Protocol: descriptor\r\n",
+                                            "Sec-WebSocket-Protocol: http\r\n",
+                                            "Sec-WebSocket-Protocol: other\r\n"};
+/// Each of them is refused.
+void expect_no_socket(int port, const std::string& path = "/") {
+  EXPECT_EQ(answer(port, {"GET " + path +
+                          " HTTP/1.1\r\nHost: localhost\r\nUpgrade: h2c\r\nConnection: Upgrade, "
+                          "HTTP2-Settings\r\nHTTP2-Settings: AAMAAABkAAQAAP__\r\n\r\n"}),
+            "")
+      << "HTTP/2";
+  for (const std::string& protocol : kNoProtocols)
+    EXPECT_EQ(answer(port, {upgrade(path, "Host: localhost\r\n" + protocol)}, "\r\n\r\n"), "")
+        << protocol;
+}
+
+TEST(Servers, AWebSocketWithoutAProtocolOfTheServerIsRefused) {
+  Console console;
+  expect_no_socket(console.port());
+  EXPECT_TRUE(console.open("Host: localhost\r\n"));
+  Echo echo;
+  expect_no_socket(echo.port(), "/mcp");
+  const viewer::Server::Options options{{"127.0.0.1", 0, {}, {}},
+                                        "robot",
+                                        [](const auto& key) { return key == "k"; },
+                                        [](auto) {},
+                                        [](auto) {}};
+  const viewer::Server::Events events{[](auto) {}, [] {}, [] {}};
+  Running<viewer::Server> viewer(options, std::vector<viewer::Channel>(), events);
+  expect_no_socket(viewer->port());
+  expect_no_socket(viewer->port(), "/?key=k");
+  const std::string known = "Host: localhost\r\nSec-WebSocket-Protocol: foxglove.sdk.v1\r\n";
+  EXPECT_TRUE(has(answer(viewer->port(), {upgrade("/?key=k", known)}, "\r\n\r\n"), " 101 "));
+  EXPECT_TRUE(has(answer(viewer->port(), {upgrade("/?key=other", known)}, "\r\n\r\n"), " 403 "));
 }
 
 /// A certificate and its key, for a name, in two files.

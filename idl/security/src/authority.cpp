@@ -107,8 +107,11 @@ Authority::Authority(const std::string& folder) : folder_(folder) {
   const std::string roles_file = folder_ + "/" + kRolesFile;
   roles_ = parse_roles(read_file(roles_file), roles_file, topics_of_contract());
   load_members();
-  checked(folder_ + "/" + kRevoked, kRestore,
-          [&] { revoked_.members = load_revoked(folder_, certificate_).members; });
+  checked(folder_ + "/" + kRevoked, kRestore, [&] {
+    // The list is written before the number is on record.
+    Revoked list = load_revoked(folder_, certificate_);
+    revoked_ = {std::max(list.number, revoked_.number), std::move(list.members)};
+  });
 }
 
 void Authority::load_members() {
@@ -206,8 +209,6 @@ std::string Authority::add(const std::string& name, const std::vector<std::strin
   member.until = now + days * kDay;
   fs::remove_all(folder_of(name));  // roles that it had before
   issue(name, member, now);
-  members_[name] = member;
-  save_members();
   return folder_of(name);
 }
 
@@ -220,8 +221,6 @@ std::string Authority::renew(const std::string& name, int days, std::int64_t now
   ++member.issue;
   member.until = now + days * kDay;
   issue(name, member, now);
-  members_[name] = member;
-  save_members();
   return folder_of(name);
 }
 
@@ -273,8 +272,13 @@ void Authority::write_shared(const std::string& folder) const {
   write(folder + "/" + kSiteKey, keys);
 }
 
-void Authority::issue(const std::string& name, const Member& member, std::int64_t now) const {
+/// The number of a certificate is on record before the certificate is there: a revocation lists
+/// those up to that number.
+void Authority::issue(const std::string& name, const Member& member, std::int64_t now) {
   const Private mode;
+  write(folder_ + "/" + kSiteKey, site_keys_text(site_keys()));  // as the members before need it
+  members_[name] = member;
+  save_members();
   const KeyPair authority = key_pair(key_, certificate_);
   const Validity validity{now - kEarlier, member.until};
   for (const std::string& role : member.roles) {

@@ -105,6 +105,34 @@ TEST(AuthorityTest, WhatIsRevokedDoesNotStartAgain) {
   EXPECT_EQ(again.subject, (Subject{"karen", 3, "observer", "office"}));
 }
 
+TEST(AuthorityTest, NoCertificateIsMadeThatARevocationWouldNotList) {
+  const Folder folder;
+  Authority authority = folder.authority();
+  const std::string karen = authority.add("karen", {"operator"}, "", 365, kNow);
+  // No file can take the place of a folder with something in it.
+  const std::string members = folder.path() + "/members.txt";
+  fs::rename(members, folder.path("kept"));
+  fs::create_directories(members + "/in the way");
+  EXPECT_TRUE(says(trouble([&] { authority.renew("karen", 365, kNow); }), "members.txt"));
+  EXPECT_TRUE(
+      says(trouble([&] { authority.add("john", {"operator"}, "", 365, kNow); }), "members.txt"));
+  EXPECT_EQ(load_credentials(karen, "cli", kNow).subject.issue, 1U);
+  EXPECT_FALSE(fs::exists(folder.path() + "/members/john"));
+  const auto repaired = [&] {
+    fs::remove_all(members);
+    fs::copy(folder.path("kept"), members);
+    return Authority(folder.path());
+  };
+  Authority again = repaired();
+  fs::remove_all(members);
+  fs::create_directories(members + "/in the way");
+  EXPECT_TRUE(says(trouble([&] { again.revoke("karen"); }), "members.txt"));
+  repaired().revoke("karen");
+  EXPECT_TRUE(says(trouble([&] { load_credentials(karen, "cli", kNow); }), "karen.1 was revoked"));
+  EXPECT_EQ(load_revoked(karen, read_bytes(karen + "/authority.pem")).number, 2U)
+      << "a list with the number of one before would not be taken";
+}
+
 TEST(AuthorityTest, ARevocationMakesANewKeyOfTheSite) {
   const Folder folder;
   Authority authority = folder.authority();
@@ -129,6 +157,8 @@ TEST(AuthorityTest, ARevocationMakesANewKeyOfTheSite) {
   Authority again(folder.path());
   again.renew("karen", 365, kNow);
   EXPECT_EQ(keys("karen"), std::vector<std::string>{both[0]}) << "all have the new one";
+  made["new"] = again.add("new", {"operator"}, "", 365, kNow);
+  EXPECT_EQ(keys("new"), std::vector<std::string>{both[0]});
 }
 
 TEST(AuthorityTest, ASiteFromBeforeTheSealGetsAKey) {

@@ -17,6 +17,13 @@ for (const [address, host, here, machine, expected] of [
   ['https://lab:8643/', 'lab', '10.0.0.7', 'lab', 'https://lab:8643/'],   // the name of its certificate
   ['https://other:8642/', 'other', 'localhost', 'lab', 'https://other:8642/'],
   ['', '', 'localhost', 'lab', ''],
+  ['nonsense', 'lab', 'localhost', 'lab', ''],
+  ['http://', 'lab', 'localhost', 'lab', ''],
+  ['http://[', 'other', 'localhost', 'lab', ''],
+  ['//other:8642/', 'other', 'localhost', 'lab', ''],
+  ['javascript:alert(1)', 'lab', 'localhost', 'lab', ''],
+  ['data:text/html,hello', 'lab', 'localhost', 'lab', ''],
+  ['file://localhost/etc/passwd', 'lab', 'localhost', 'lab', ''],
 ])
   test(`${address} of ${host}, seen from ${here} of ${machine}`, () => {
     const way = wayTo({address, host}, {hostname: here}, machine);

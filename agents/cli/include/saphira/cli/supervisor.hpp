@@ -28,6 +28,9 @@ struct ChildSpec {
 /// The words as execv() takes them, with a null at the end.
 std::vector<char*> pointers(std::vector<std::string>& words);
 
+/// The environment of this process with those variables added or replaced, as NAME=VALUE.
+std::vector<std::string> merged_environment(const std::map<std::string, std::string>& added);
+
 /// The identity of a file, which differs from that of a later file with the same path.
 std::string file_of(const std::string& path);
 

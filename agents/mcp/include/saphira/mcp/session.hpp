@@ -75,6 +75,7 @@ struct Sender {
   std::string client;    ///< identity from the newer era's client, as JSON
   std::string name;      ///< of the client's program, on one line [empty: not given]
   std::string tool;      ///< that it calls [empty: none]
+  bool operator==(const Sender&) const = default;
 };
 Sender sender_of(std::string_view message);
 

@@ -47,7 +47,7 @@ class Authority {
   std::string revoked_list() const;
 
  private:
-  void issue(const std::string& name, const Member& member, std::int64_t now) const;
+  void issue(const std::string& name, const Member& member, std::int64_t now);
   std::vector<std::string> site_keys() const;
   void write_shared(const std::string& folder) const;
   void save_members() const;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <fstream>
+#include <string>
+
+namespace saphira::recorder {
+
+/// Holds the name of a recording, so that no second recorder writes there. A recording that is
+/// there stays until something is recorded.
+class Held {
+ public:
+  /// std::invalid_argument where another recorder writes it, or where something is there that would
+  /// be lost.
+  Held(const std::string& file, bool overwrite);
+  /// A new recording that has not taken its place is removed.
+  ~Held();
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+  std::ostream& out() { return out_; }
+  /// The written part takes its place, once. std::runtime_error where it cannot.
+  void keep();
+
+ private:
+  /// -1: there is none.
+  int locked(const std::string& path, int flags) const;
+
+  const std::string file_;
+  const std::string new_;
+  int lock_ = -1;
+  int before_ = -1;  ///< the lock of a recording that is there
+  bool is_kept_ = false;
+  std::ofstream out_;
+};
+
+}  // namespace saphira::recorder
