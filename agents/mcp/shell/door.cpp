@@ -512,7 +512,9 @@ void Door::cancel_other(const Call& call, const std::optional<v1::GoalId>& id) {
         call, "not done: this is " + known->functor + " of " + known->requester + ", " +
                   bus::describe(*known) +
                   ". Shall it end? Ask the person; after a yes call cancel again with sure: true");
-  goals_.cancel(*id, who_ + " was sure, after a question", person_);
+  // On a secured bus the door may, which knows the keys of its persons; a person at it may not.
+  goals_.cancel(*id, who_ + " was sure, after a question",
+                node_.identity() ? v1::Person{} : person_);
   waiting_[call.number] = {.what = Waiting::For::cancel, .goal = id, .until = now_ + kStop};
 }
 

@@ -81,7 +81,9 @@ Goal from_bus(const v1::Goal& goal) {
 Core::Received::Goal from_bus(const bus::Sample<v1::Goal>& sample) {
   Core::Received::Goal goal;
   goal.event.goal = from_bus(sample.data);
-  goal.event.why = sample.data.withdrawn;
+  // A withdrawal without a sample has the data that came last, whose writer may be another one.
+  if (!sample.info.disposed)
+    goal.event.why = sample.data.withdrawn;
   goal.event.kind = sample.info.disposed || !goal.event.why.empty() ? GoalEvent::Kind::kDisposed
                                                                     : GoalEvent::Kind::kWritten;
   goal.person = bus::asker_of(sample.info, sample.data.person);

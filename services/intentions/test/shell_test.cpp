@@ -60,6 +60,14 @@ class ShellTest : public testing::Test {
   std::string folder;  ///< of activities
 };
 
+TEST(Goals, AWithdrawalWithoutASampleHasNoReasonOfAnother) {
+  bus::Sample<v1::Goal> sample{{.withdrawn = "carl was sure"}, {}};
+  EXPECT_EQ(from_bus(sample).event.why, "carl was sure");
+  sample.info.disposed = true;
+  EXPECT_EQ(from_bus(sample).event.why, "");
+  EXPECT_EQ(from_bus(sample).event.kind, GoalEvent::Kind::kDisposed);
+}
+
 TEST_F(ShellTest, DrivesToAGoalAndSaysSo) {
   start();
   const v1::GoalId id = goals.ask(go_to(1.0, 0.5));

@@ -41,6 +41,8 @@ TEST(Identity, APersonAtADoorIsNoMemberAndHasItsRightsAtMost) {
   EXPECT_EQ(acting_for(kOperator, {"anna", "agent"}), (Identity{"anna at karen", "agent"}));
   EXPECT_EQ(acting_for(kOperator, {"anna", "services"}), (Identity{"anna at karen", "observer"}));
   EXPECT_FALSE(may_end(acting_for(kAgent, kOperator), kOperator));
+  EXPECT_TRUE(may_end(kAgent, acting_for(kAgent, anna))) << "the door";
+  EXPECT_FALSE(may_end(acting_for(kAgent, kOperator), acting_for(kAgent, anna)));
 }
 
 TEST(Identity, NobodyElseSpeaksForPersons) {

@@ -141,6 +141,10 @@ void Executor::change(Entry& entry, const GoalEvent& event) {
     put_up(entry, goal, std::move(complete));
     entry.changed = entry.node != 0;
     entry.unapproved = event.needs_approval && !entry.schema->replaces;
+    if (other && entry.schema->replaces) {  // it stops what was accepted until now
+      entry.accepted = now_;
+      entry.order = next_order_++;
+    }
   } else {
     entry.goal = goal;
     entry.status.requester = goal.requester;

@@ -44,11 +44,12 @@ inline bool may_be_of_a_kind(const Checked& self, const Identity* other) {
                               (self->role == "robot" || other->role == "robot"))));
 }
 
-/// True where `who` may change, replace or end what `owner` has asked for: the owner and operators.
-/// A stop is anybody's, and no matter of this.
+/// True where `who` may change, replace or end what `owner` has asked for: the owner, operators, and
+/// the door at which the owner is a person. A stop is anybody's, and no matter of this.
 inline bool may_end(const Checked& who, const Checked& owner) {
   return !who || !owner || who->role == "operator" ||
-         (!who->name.empty() && who->name == owner->name);
+         (!who->name.empty() &&
+          (who->name == owner->name || owner->name.ends_with(" at " + who->name)));
 }
 
 /// For whom a sample counts whose writer names a person [empty name: nobody else]. The robot's own
