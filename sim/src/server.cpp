@@ -243,23 +243,23 @@ bool Server::drive(const Command& command) {
   };
   return std::visit(
       Overloaded{
-          [&](const Velocity& c) { return move([&](Robot& r) { r.set_velocity(c.velocity); }); },
+          [&](const Velocity& c) { return move([&](Robot& r) { r.set_velocity(c.value); }); },
           [&](const Heading& c) { return move([&](Robot& r) { r.set_heading(c.heading); }); },
-          [&](const DeltaHeading& c) { return move([&](Robot& r) { r.turn_by(c.delta); }); },
+          [&](const DeltaHeading& c) { return move([&](Robot& r) { r.turn_by(c.value); }); },
           [&](const RotationVelocity& c) {
-            return move([&](Robot& r) { r.set_rotation_velocity(c.velocity); });
+            return move([&](Robot& r) { r.set_rotation_velocity(c.value); });
           },
           [&](const WheelVelocities& c) {
             return move([&](Robot& r) { r.set_wheel_velocities(c.left, c.right); });
           },
           [&](const Rotate& c) {
-            return later_ && move([&](Robot& r) { r.set_rotation_velocity(c.velocity); });
+            return later_ && move([&](Robot& r) { r.set_rotation_velocity(c.value); });
           },
           [&](const DeltaSetpoint& c) {
-            return later_ && move([&](Robot& r) { r.set_heading(r.target_heading() + c.delta); });
+            return later_ && move([&](Robot& r) { r.set_heading(r.target_heading() + c.value); });
           },
           [&](const Move& c) {
-            return p.move_command && move([&](Robot& r) { r.move_by(c.distance); });
+            return p.move_command && move([&](Robot& r) { r.move_by(c.value); });
           },
           [&](const Bare& c) {
             switch (c.number) {
@@ -285,26 +285,25 @@ bool Server::drive(const Command& command) {
             return true;
           },
           [&](const MaxVelocity& c) {
-            return set(p.settable_velocities, [&] { robot_.set_max_velocity(c.velocity); });
+            return set(p.settable_velocities, [&] { robot_.set_max_velocity(c.value); });
           },
           [&](const MaxRotationVelocity& c) {
-            return set(p.settable_velocities,
-                       [&] { robot_.set_max_rotation_velocity(c.velocity); });
+            return set(p.settable_velocities, [&] { robot_.set_max_rotation_velocity(c.value); });
           },
           [&](const Acceleration& c) {
             return set(p.settable_accelerations, [&] {
-              if (c.acceleration >= 0.0)
-                robot_.set_acceleration(c.acceleration);
+              if (c.value >= 0.0)
+                robot_.set_acceleration(c.value);
               else
-                robot_.set_deceleration(-c.acceleration);
+                robot_.set_deceleration(-c.value);
             });
           },
           [&](const RotationAcceleration& c) {
             return set(p.settable_accelerations, [&] {
-              if (c.acceleration >= 0.0)
-                robot_.set_rotation_acceleration(c.acceleration);
+              if (c.value >= 0.0)
+                robot_.set_rotation_acceleration(c.value);
               else
-                robot_.set_rotation_deceleration(-c.acceleration);
+                robot_.set_rotation_deceleration(-c.value);
             });
           },
           [](const auto&) { return false; },

@@ -397,7 +397,7 @@ class Bridge : public saphira::test::LinePlayer {
     std::vector<double> all;
     for (const protocol::Command& command : s_->sent)
       if (const auto* const velocity = std::get_if<protocol::Velocity>(&command))
-        all.push_back(velocity->velocity);
+        all.push_back(velocity->value);
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return joined(all, " ", [](double speed) { return format("%g", speed); });
   }

@@ -67,7 +67,7 @@ TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
     double velocity = 0.0;
     for (const protocol::Command& command : std::exchange(scene.sent, {}))
       if (const auto* const told = std::get_if<protocol::Velocity>(&command))
-        velocity = std::max(velocity, told->velocity);
+        velocity = std::max(velocity, told->value);
     return velocity;
   };
   EXPECT_TRUE(scene.was_sent(protocol::ConfigRequest{1}));
@@ -101,7 +101,7 @@ int lurches(Scene& scene, double seconds, bool damages) {
     scene.drive(Role::behaviors, 0.3);
     for (const protocol::Command& command : scene.sent)
       if (const auto* const velocity = std::get_if<protocol::Velocity>(&command))
-        if (std::exchange(moves, velocity->velocity != 0.0) == false && moves)
+        if (std::exchange(moves, velocity->value != 0.0) == false && moves)
           ++begun;
     scene.sent.clear();
   }

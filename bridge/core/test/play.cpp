@@ -135,7 +135,7 @@ void Player::hear(const protocol::Bytes& sent) {
     const protocol::Command command = protocol::decode_command(*body);
     if (const auto* const velocity = std::get_if<protocol::Velocity>(&command))
       shown_.left_velocity = shown_.right_velocity =
-          static_cast<std::int16_t>(std::lround(velocity->velocity / robot_.velocity_unit));
+          static_cast<std::int16_t>(std::lround(velocity->value / robot_.velocity_unit));
   }
 }
 

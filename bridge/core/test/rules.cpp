@@ -190,13 +190,13 @@ void Rules::command_sent(const protocol::Command& command) {
     if (stamp_.epoch == 0)
       zero_velocity_ = zero_turn_ = velocity_is_zero_ = turn_is_zero_ = false;
   } else if (const auto* const velocity = std::get_if<Velocity>(&command)) {
-    velocity_is_zero_ = velocity->velocity == 0.0;
+    velocity_is_zero_ = velocity->value == 0.0;
     if (velocity_is_zero_)
       zero_velocity_ = true;
     else
       moves("a velocity");
   } else if (const auto* const turn = std::get_if<RotationVelocity>(&command)) {
-    turn_is_zero_ = turn->velocity == 0.0;
+    turn_is_zero_ = turn->value == 0.0;
     if (turn_is_zero_)
       zero_turn_ = true;
     else

@@ -158,7 +158,7 @@ struct Scene {
   bool was_moved() const {
     return std::any_of(sent.begin(), sent.end(), [](const protocol::Command& command) {
       const auto* const velocity = std::get_if<protocol::Velocity>(&command);
-      return velocity != nullptr && velocity->velocity != 0.0;
+      return velocity != nullptr && velocity->value != 0.0;
     });
   }
   Condition condition() const {

@@ -28,8 +28,8 @@ bool stops(ByteView body) {
   const Command command = decode_command(body);
   const auto* const velocity = std::get_if<Velocity>(&command);
   const auto* const rotation = std::get_if<RotationVelocity>(&command);
-  return (velocity != nullptr && velocity->velocity == 0.0) ||
-         (rotation != nullptr && rotation->velocity == 0.0);
+  return (velocity != nullptr && velocity->value == 0.0) ||
+         (rotation != nullptr && rotation->value == 0.0);
 }
 
 std::string name_of(std::uint8_t number) {

@@ -134,6 +134,14 @@ Command decode_plain(ByteView body) {
   return Unknown{body[0]};
 }
 
+// The one of these commands that has the number.
+template <class... Quantities>
+std::optional<Command> quantity_of(Number number, int value) {
+  std::optional<Command> found;
+  ((Quantities::kNumber == number ? void(found = Quantities::of_packet(value)) : void()), ...);
+  return found;
+}
+
 // A command with a type of its own whose argument is a number.
 std::optional<Command> decode_number(Number number, const Argument& argument, ByteView body,
                                      double vel2_unit) {
@@ -141,14 +149,8 @@ std::optional<Command> decode_number(Number number, const Argument& argument, By
   // The devices' arguments are bit patterns or counts: no sign.
   const auto word = static_cast<std::uint16_t>(value & 0xFFFF);
   switch (number) {
-    case Number::kVelocity:
-      return Velocity{value / 1000.0};
     case Number::kHeading:
       return Heading{radians(value)};
-    case Number::kDeltaHeading:
-      return DeltaHeading{radians(value)};
-    case Number::kRotationVelocity:
-      return RotationVelocity{radians(value)};
     case Number::kWheelVelocities: {
       if (argument.kind != Argument::Kind::kInt)
         return WheelVelocities{};
@@ -167,26 +169,12 @@ std::optional<Command> decode_number(Number number, const Argument& argument, By
       return Ptu{word};
     case Number::kEnable:
       return Enable{value != 0};
-    case Number::kAcceleration:
-      return Acceleration{value / 1000.0};
-    case Number::kMaxVelocity:
-      return MaxVelocity{std::abs(value) / 1000.0};
-    case Number::kMove:
-      return Move{value / 1000.0};
-    case Number::kRotate:
-      return Rotate{radians(value)};
-    case Number::kMaxRotationVelocity:
-      return MaxRotationVelocity{radians(std::abs(value))};
-    case Number::kRotationAcceleration:
-      return RotationAcceleration{radians(value)};
-    case Number::kDeltaSetpoint:
-      return DeltaSetpoint{radians(value)};
     case Number::kSonar:
       return SonarSwitch{(word & 1U) != 0, static_cast<std::uint8_t>(word >> 1U & 0x7FU)};
-    case Number::kLateralVelocity:
-      return LateralVelocity{value / 1000.0};
     default:
-      return std::nullopt;
+      return quantity_of<Velocity, DeltaHeading, RotationVelocity, Acceleration, MaxVelocity, Move,
+                         Rotate, MaxRotationVelocity, RotationAcceleration, DeltaSetpoint,
+                         LateralVelocity>(number, value);
   }
 }
 
@@ -202,20 +190,15 @@ Bytes encode(const Command& command, double vel2_unit, StringForm form) {
                 text.push_back(static_cast<std::uint8_t>(sonar + 1));
             return with_string(Number::kPolling, text, form);
           },
-          [](const Velocity& c) {
-            return with_int(Number::kVelocity, rounded(c.velocity * 1000.0, -32767, 32767));
+          []<Number N, PacketUnit unit, int low, int high>(const Quantity<N, unit, low, high>& c) {
+            const double whole = unit == PacketUnit::kMilli ? c.value * 1000.0 : degrees(c.value);
+            return with_int(N, rounded(whole, low, high));
           },
           [](const Heading& c) {
             const int whole = std::isfinite(c.heading)
                                   ? rounded(degrees(norm_angle(c.heading)), 0, 360) % 360
                                   : 0;
             return with_int(Number::kHeading, whole);
-          },
-          [](const DeltaHeading& c) {
-            return with_int(Number::kDeltaHeading, rounded(degrees(c.delta), -255, 255));
-          },
-          [](const RotationVelocity& c) {
-            return with_int(Number::kRotationVelocity, rounded(degrees(c.velocity), -255, 255));
           },
           [vel2_unit](const WheelVelocities& c) {
             const int left = rounded(c.left / vel2_unit, -127, 127);
@@ -233,33 +216,8 @@ Bytes encode(const Command& command, double vel2_unit, StringForm form) {
           [](const Gripper& c) { return with_int(Number::kGripper, c.state); },
           [](const Ptu& c) { return with_int(Number::kPtu, c.width); },
           [](const Enable& c) { return with_int(Number::kEnable, c.on ? 1 : 0); },
-          [](const Acceleration& c) {
-            return with_int(Number::kAcceleration, rounded(c.acceleration * 1000.0, -32767, 32767));
-          },
-          [](const MaxVelocity& c) {
-            return with_int(Number::kMaxVelocity, rounded(c.velocity * 1000.0, 0, 32767));
-          },
-          [](const Move& c) {
-            return with_int(Number::kMove, rounded(c.distance * 1000.0, -32767, 32767));
-          },
-          [](const Rotate& c) {
-            return with_int(Number::kRotate, rounded(degrees(c.velocity), -32767, 32767));
-          },
-          [](const MaxRotationVelocity& c) {
-            return with_int(Number::kMaxRotationVelocity, rounded(degrees(c.velocity), 0, 32767));
-          },
-          [](const RotationAcceleration& c) {
-            return with_int(Number::kRotationAcceleration,
-                            rounded(degrees(c.acceleration), -32767, 32767));
-          },
-          [](const DeltaSetpoint& c) {
-            return with_int(Number::kDeltaSetpoint, rounded(degrees(c.delta), -32767, 32767));
-          },
           [](const SonarSwitch& c) {
             return with_int(Number::kSonar, (c.on ? 1 : 0) | c.array << 1);
-          },
-          [](const LateralVelocity& c) {
-            return with_int(Number::kLateralVelocity, rounded(c.velocity * 1000.0, -32767, 32767));
           },
           [](const TruePose& c) { return with_pose(Number::kTruePose, c.pose_in_world); },
           [](const Bare& c) { return bare(c.number); },

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <span>
 #include <string>
@@ -91,25 +92,35 @@ struct Polling {
   std::vector<std::uint8_t> sonars;  ///< from 0; the packet carries 1 + number
   bool operator==(const Polling&) const = default;
 };
-/// sfCOMVEL. Sent in whole mm/s.
-struct Velocity {
-  double velocity = 0.0;  ///< [m/s] forward positive
-  bool operator==(const Velocity&) const = default;
+/// The unit of a quantity in its packet.
+enum class PacketUnit { kMilli, kDegree };  ///< thousandths of the SI unit; degrees
+/// A command of a quantity, which is sent in whole units of the packet. Where `low` is 0 its size
+/// alone counts.
+template <Number N, PacketUnit unit, int low, int high>
+struct Quantity {
+  static constexpr Number kNumber = N;
+  static Quantity of_packet(int whole) {
+    whole = low == 0 ? std::abs(whole) : whole;
+    return {unit == PacketUnit::kMilli ? whole / 1000.0 : radians(whole)};
+  }
+  double value = 0.0;
+  bool operator==(const Quantity&) const = default;
 };
+template <Number N, int low = -32767, int high = 32767>
+using Milli = Quantity<N, PacketUnit::kMilli, low, high>;
+template <Number N, int low = -32767, int high = 32767>
+using Degrees = Quantity<N, PacketUnit::kDegree, low, high>;
+
+/// sfCOMVEL [m/s] forward positive.
+using Velocity = Milli<Number::kVelocity>;
+/// sfCOMDHEAD [rad]: turn by, left positive.
+using DeltaHeading = Degrees<Number::kDeltaHeading, -255, 255>;
+/// sfCOMRVEL [rad/s] left positive.
+using RotationVelocity = Degrees<Number::kRotationVelocity, -255, 255>;
 /// sfCOMHEAD: turn to a heading of the server's own coordinates. Sent in whole degrees, 0 to 359.
 struct Heading {
   double heading = 0.0;  ///< [rad]
   bool operator==(const Heading&) const = default;
-};
-/// sfCOMDHEAD: turn by. Sent in whole degrees, at most 255.
-struct DeltaHeading {
-  double delta = 0.0;  ///< [rad] left positive
-  bool operator==(const DeltaHeading&) const = default;
-};
-/// sfCOMRVEL. Sent in whole deg/s, at most 255.
-struct RotationVelocity {
-  double velocity = 0.0;  ///< [rad/s] left positive
-  bool operator==(const RotationVelocity&) const = default;
 };
 /// sfCOMVEL2: both wheels independently. Sent in units of Vel2Divisor, at most +-127 of them.
 struct WheelVelocities {
@@ -147,51 +158,27 @@ struct Enable {
   bool on = false;
   bool operator==(const Enable&) const = default;
 };
-/// SETA: the acceleration of translation, or the deceleration where it is negative. Whole mm/s2.
-struct Acceleration {
-  double acceleration = 0.0;  ///< [m/s2]
-  bool operator==(const Acceleration&) const = default;
-};
-/// SETV: the largest velocity of a MOVE and of other motions without their own. Whole mm/s.
-struct MaxVelocity {
-  double velocity = 0.0;  ///< [m/s]
-  bool operator==(const MaxVelocity&) const = default;
-};
-/// MOVE: translate by. Whole mm; ARIA limits it to 5 m.
-struct Move {
-  double distance = 0.0;  ///< [m] forward positive
-  bool operator==(const Move&) const = default;
-};
-/// ROTATE: the later name of RVEL. Whole deg/s.
-struct Rotate {
-  double velocity = 0.0;  ///< [rad/s] left positive
-  bool operator==(const Rotate&) const = default;
-};
-/// SETRV: the largest velocity of a turn to a heading. Whole deg/s.
-struct MaxRotationVelocity {
-  double velocity = 0.0;  ///< [rad/s]
-  bool operator==(const MaxRotationVelocity&) const = default;
-};
-/// SETRA: the acceleration of rotation, or the deceleration where it is negative. Whole deg/s2.
-struct RotationAcceleration {
-  double acceleration = 0.0;  ///< [rad/s2]
-  bool operator==(const RotationAcceleration&) const = default;
-};
-/// DCHEAD: turn by, counted from the heading that was set last. Whole degrees.
-struct DeltaSetpoint {
-  double delta = 0.0;  ///< [rad] left positive
-  bool operator==(const DeltaSetpoint&) const = default;
-};
+/// SETA [m/s2]: the acceleration of translation, or the deceleration where it is negative.
+using Acceleration = Milli<Number::kAcceleration>;
+/// SETV [m/s]: the largest velocity of a MOVE and of other motions without their own.
+using MaxVelocity = Milli<Number::kMaxVelocity, 0>;
+/// MOVE [m]: translate by, forward positive. ARIA limits it to 5 m.
+using Move = Milli<Number::kMove>;
+/// ROTATE [rad/s] left positive: the later name of RVEL.
+using Rotate = Degrees<Number::kRotate>;
+/// SETRV [rad/s]: the largest velocity of a turn to a heading.
+using MaxRotationVelocity = Degrees<Number::kMaxRotationVelocity, 0>;
+/// SETRA [rad/s2]: the acceleration of rotation, or the deceleration where it is negative.
+using RotationAcceleration = Degrees<Number::kRotationAcceleration>;
+/// DCHEAD [rad]: turn by, counted from the heading that was set last; left positive.
+using DeltaSetpoint = Degrees<Number::kDeltaSetpoint>;
+/// LATVEL [m/s]: sideways, left positive, for robots that can.
+using LateralVelocity = Milli<Number::kLateralVelocity>;
 /// SONAR: arrays on or off. Bit 0 of the argument is on; the bits above it choose an array.
 struct SonarSwitch {
   bool on = false;
   std::uint8_t array = 0;  ///< from 1; 0: all of them
   bool operator==(const SonarSwitch&) const = default;
-};
-/// LATVEL: sideways, for robots that can. Whole mm/s.
-struct LateralVelocity {
-  double velocity = 0.0;  ///< [m/s] left positive
-  bool operator==(const LateralVelocity&) const = default;
 };
 /// MobileSim's SET_POSE: the true pose; dead reckoning does not change. Whole mm, degrees.
 struct TruePose {
