@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "saphira/base/archive.hpp"
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/full_disk.hpp"
 #include "saphira/base/text.hpp"
@@ -83,14 +84,8 @@ bool LatchFile::keep(const std::string& text) const {
 }
 
 bool LatchFile::fill(const std::string& file, const std::string& text) const {
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
-  if (fd < 0)
-    return false;
-  const bool written =
-      ::pwrite(fd, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
-      ::ftruncate(fd, static_cast<off_t>(text.size())) == 0;
-  ::close(fd);
-  return written && (file == path_ || std::rename(file.c_str(), path_.c_str()) == 0);
+  const Descriptor fd = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  return overwrite(fd, text) && (file == path_ || std::rename(file.c_str(), path_.c_str()) == 0);
 }
 
 }  // namespace saphira::bridge

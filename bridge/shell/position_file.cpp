@@ -32,11 +32,6 @@ PositionFile::PositionFile(std::string path, Files files)
     throw std::invalid_argument("--state " + path_ + ": " + std::strerror(errno));
 }
 
-PositionFile::~PositionFile() {
-  if (fd_ >= 0)
-    ::close(fd_);
-}
-
 bool PositionFile::open() {
   if (fd_ < 0)
     fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);

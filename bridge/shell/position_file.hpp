@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/reflector/odometry.hpp"
 
@@ -14,9 +15,6 @@ class PositionFile {
   /// An empty path: nothing is saved. std::invalid_argument where it is another file, or cannot be
   /// opened for another reason than a full disk.
   explicit PositionFile(std::string path, Files files = Files::kChange);
-  ~PositionFile();
-  PositionFile(const PositionFile&) = delete;
-  PositionFile& operator=(const PositionFile&) = delete;
 
   /// Its content; nothing where the file is new, or nothing is saved.
   const std::optional<reflector::OdometryMemory>& found() const { return found_; }
@@ -33,7 +31,7 @@ class PositionFile {
   std::optional<reflector::OdometryMemory> found_;
   std::string trouble_;
   std::string told_;
-  int fd_ = -1;
+  Descriptor fd_;
 };
 
 }  // namespace saphira::bridge

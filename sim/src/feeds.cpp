@@ -29,7 +29,7 @@ bool passes() {
 bool receive(Viewers::Viewer& viewer, std::size_t most) {
   std::array<char, 2048> part{};
   for (;;) {
-    const ssize_t size = ::recv(viewer.fd.get(), part.data(), part.size(), MSG_DONTWAIT);
+    const ssize_t size = ::recv(viewer.fd, part.data(), part.size(), MSG_DONTWAIT);
     if (size == 0 || viewer.said.size() > most)
       return false;
     if (size < 0)
@@ -42,7 +42,7 @@ bool receive(Viewers::Viewer& viewer, std::size_t most) {
 bool send(Viewers::Viewer& viewer, std::size_t most) {
   while (!viewer.waiting.empty()) {
     const ssize_t size =
-        ::send(viewer.fd.get(), viewer.waiting.data(), viewer.waiting.size(), MSG_NOSIGNAL);
+        ::send(viewer.fd, viewer.waiting.data(), viewer.waiting.size(), MSG_NOSIGNAL);
     if (size < 0)
       return passes() && viewer.waiting.size() < most;
     viewer.waiting.erase(0, static_cast<std::size_t>(size));
@@ -55,13 +55,13 @@ bool send(Viewers::Viewer& viewer, std::size_t most) {
 void Viewers::add_to(std::vector<pollfd>& fds) const {
   fds.push_back({listener_.fd(), POLLIN, 0});
   for (const Viewer& viewer : all)
-    fds.push_back({viewer.fd.get(),
-                   static_cast<short>(viewer.waiting.empty() ? POLLIN : POLLIN | POLLOUT), 0});
+    fds.push_back(
+        {viewer.fd, static_cast<short>(viewer.waiting.empty() ? POLLIN : POLLIN | POLLOUT), 0});
 }
 
 bool Viewers::accept(const std::function<std::string()>& first, std::size_t most) {
   const std::size_t before = all.size();
-  for (Fd fd = listener_.accept(); fd && all.size() < most; fd = listener_.accept())
+  for (Descriptor fd = listener_.accept(); fd && all.size() < most; fd = listener_.accept())
     all.push_back({std::move(fd), first()});
   return all.size() > before;
 }

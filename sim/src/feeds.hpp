@@ -18,7 +18,7 @@ namespace saphira::sim {
 class Viewers {
  public:
   struct Viewer {
-    Fd fd;
+    Descriptor fd;
     std::string waiting;
     std::string said = {};
   };

@@ -51,12 +51,6 @@ void expect_socket(const std::string& path) {
                        ", which stays as it is");
 }
 
-void Fd::reset(int fd) {
-  if (fd_ >= 0)
-    ::close(fd_);
-  fd_ = fd;
-}
-
 Listener::~Listener() {
   // Unless another simulator has replaced it meanwhile.
   struct stat now {};
@@ -64,8 +58,8 @@ Listener::~Listener() {
     ::unlink(path_.c_str());
 }
 
-Fd Listener::accept() const {
-  return Fd(::accept4(fd_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+Descriptor Listener::accept() const {
+  return Descriptor(::accept4(fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
 }
 
 Listener Listener::local(const std::string& path) {
@@ -74,18 +68,17 @@ Listener Listener::local(const std::string& path) {
   const sockaddr_un address = local_address(path);
   out.name_ = path;
   // A killed simulator leaves its socket behind; a living one answers.
-  const Fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto* where = reinterpret_cast<const sockaddr*>(&address);
   struct stat there {};
   if (::lstat(path.c_str(), &there) == 0) {
-    if (::connect(probe.get(), where, sizeof address) == 0)
+    if (::connect(probe, where, sizeof address) == 0)
       throw UnusableFile("socket " + path + ": another simulator listens on it");
     if (errno == ECONNREFUSED)
       ::unlink(path.c_str());
   }
   out.fd_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (!out.fd_ || ::bind(out.fd_.get(), where, sizeof address) != 0 ||
-      ::listen(out.fd_.get(), 8) != 0)
+  if (!out.fd_ || ::bind(out.fd_, where, sizeof address) != 0 || ::listen(out.fd_, 8) != 0)
     fail_to_be("socket " + path, "made");
   out.path_ = path;
   if (::stat(path.c_str(), &there) == 0)
@@ -104,13 +97,12 @@ Listener Listener::tcp(const std::string& text, std::uint16_t port) {
   out.fd_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int yes = 1;
   if (out.fd_)
-    ::setsockopt(out.fd_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  if (!out.fd_ ||
-      ::bind(out.fd_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(out.fd_.get(), 8) != 0)
+    ::setsockopt(out.fd_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (!out.fd_ || ::bind(out.fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(out.fd_, 8) != 0)
     fail("port " + out.name_);
   socklen_t size = sizeof address;
-  if (::getsockname(out.fd_.get(), reinterpret_cast<sockaddr*>(&address), &size) == 0)
+  if (::getsockname(out.fd_, reinterpret_cast<sockaddr*>(&address), &size) == 0)
     out.name_ = text + ":" + std::to_string(ntohs(address.sin_port));
   return out;
 }
@@ -118,17 +110,17 @@ Listener Listener::tcp(const std::string& text, std::uint16_t port) {
 Terminal::Terminal(std::string link) : link_(std::move(link)) {
   master_.reset(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK));
   std::array<char, 64> device{};
-  if (!master_ || ::grantpt(master_.get()) != 0 || ::unlockpt(master_.get()) != 0 ||
-      ::ptsname_r(master_.get(), device.data(), device.size()) != 0)
+  if (!master_ || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0 ||
+      ::ptsname_r(master_, device.data(), device.size()) != 0)
     fail("pseudo-terminal");
   device_ = device.data();
   // A new terminal would echo until its client has configured it.
   termios settings{};
-  ::tcgetattr(master_.get(), &settings);
+  ::tcgetattr(master_, &settings);
   ::cfmakeraw(&settings);
-  ::tcsetattr(master_.get(), TCSANOW, &settings);
+  ::tcsetattr(master_, TCSANOW, &settings);
   // A terminal reports its unused state only after a first use.
-  const Fd once(::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  const Descriptor once(::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   // A killed simulator leaves its link behind.
   struct stat there {};
   if (::lstat(link_.c_str(), &there) == 0) {
@@ -150,12 +142,12 @@ Terminal::~Terminal() {
 }
 
 bool Terminal::is_open() const {
-  pollfd look{master_.get(), 0, 0};
+  pollfd look{master_, 0, 0};
   return ::poll(&look, 1, 0) >= 0 && (look.revents & POLLHUP) == 0;
 }
 
 void Terminal::forget() const {
-  ::tcflush(master_.get(), TCOFLUSH);
+  ::tcflush(master_, TCOFLUSH);
 }
 
 }  // namespace saphira::sim

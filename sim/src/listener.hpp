@@ -4,33 +4,13 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
+
+#include "saphira/base/descriptor.hpp"
 
 namespace saphira::sim {
 
 /// std::runtime_error with the message of errno.
 [[noreturn]] void fail(const std::string& what);
-
-/// A file descriptor that is closed with its object.
-class Fd {
- public:
-  explicit Fd(int fd = -1) : fd_(fd) {}
-  ~Fd() { reset(); }
-  Fd(Fd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Fd& operator=(Fd&& other) noexcept {
-    if (this != &other)
-      reset(std::exchange(other.fd_, -1));
-    return *this;
-  }
-  Fd(const Fd&) = delete;
-  Fd& operator=(const Fd&) = delete;
-  void reset(int fd = -1);
-  int get() const { return fd_; }
-  explicit operator bool() const { return fd_ >= 0; }
-
- private:
-  int fd_;
-};
 
 /// UnusableFile where another file has the path of a local socket, or no socket can have it.
 void expect_socket(const std::string& path);
@@ -47,15 +27,15 @@ class Listener {
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
 
-  int fd() const { return fd_.get(); }
+  int fd() const { return fd_; }
   const std::string& name() const { return name_; }
   /// A client that has connected, not blocking; none for an invalid descriptor.
-  Fd accept() const;
+  Descriptor accept() const;
 
  private:
   Listener() = default;
 
-  Fd fd_;
+  Descriptor fd_;
   std::string name_;
   std::string path_;
   ino_t inode_ = 0;
@@ -71,7 +51,7 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  int fd() const { return master_.get(); }
+  int fd() const { return master_; }
   /// The link, and its device.
   std::string name() const { return link_ + " (" + device_ + ")"; }
   /// True where a client has it open.
@@ -82,7 +62,7 @@ class Terminal {
  private:
   std::string link_;
   std::string device_;
-  Fd master_;
+  Descriptor master_;
 };
 
 }  // namespace saphira::sim

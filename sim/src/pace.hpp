@@ -59,16 +59,16 @@ class Timer {
     itimerspec spec{};
     spec.it_value.tv_sec = nanoseconds / 1'000'000'000;
     spec.it_value.tv_nsec = nanoseconds % 1'000'000'000;
-    ::timerfd_settime(fd_.get(), 0, &spec, nullptr);
+    ::timerfd_settime(fd_, 0, &spec, nullptr);
   }
   void clear() const {
     const itimerspec spec{};
-    ::timerfd_settime(fd_.get(), 0, &spec, nullptr);
+    ::timerfd_settime(fd_, 0, &spec, nullptr);
   }
-  int fd() const { return fd_.get(); }
+  int fd() const { return fd_; }
 
  private:
-  Fd fd_;
+  Descriptor fd_;
 };
 
 }  // namespace saphira::sim

@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
-#include <utility>
 
 namespace saphira::sim {
 namespace {
@@ -86,7 +85,7 @@ double Station::seconds_until_given_up() const {
 }
 
 void Station::accept() {
-  Fd fd = listener_->accept();
+  Descriptor fd = listener_->accept();
   if (!fd)
     return;
   if (client_) {
@@ -94,11 +93,11 @@ void Station::accept() {
     return;
   }
   const int yes = 1;  // fails on a local socket, where it is not needed
-  ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   // A larger buffer would let time run far ahead of a client.
   const int size = 4096;
   if (patient_)
-    ::setsockopt(fd.get(), SOL_SOCKET, SO_SNDBUF, &size, sizeof size);
+    ::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &size, sizeof size);
   client_ = std::move(fd);
   log("a client has connected");
 }

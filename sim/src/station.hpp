@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -89,11 +88,11 @@ class LineCheck {
   }
   void write(const std::string& text) const {
     const std::string line = prefix_ + text + "\n";
-    [[maybe_unused]] const ssize_t size = ::write(file_.get(), line.data(), line.size());
+    [[maybe_unused]] const ssize_t size = ::write(file_, line.data(), line.size());
   }
 
   std::string prefix_;
-  Fd file_;
+  Descriptor file_;
   protocol::Checker checker_;
   std::size_t reported_ = 0;
 };
@@ -147,7 +146,9 @@ class Station {
   }
   Server& server() const { return simulation_.server(number_); }
   /// The client's descriptor; below zero without one.
-  int line() const { return terminal_ ? (terminal_open_ ? terminal_->fd() : -1) : client_.get(); }
+  int line() const {
+    return terminal_ ? (terminal_open_ ? terminal_->fd() : -1) : static_cast<int>(client_);
+  }
 
   void watch(protocol::Side side, protocol::ByteView bytes);
 
@@ -171,7 +172,7 @@ class Station {
   std::optional<Listener> listener_;
   std::optional<Terminal> terminal_;
   bool terminal_open_ = false;
-  Fd client_;
+  Descriptor client_;
   protocol::Bytes output_;
   std::optional<LineCheck> check_;
   std::vector<PictureFeed> pictures_;

@@ -47,9 +47,9 @@ double now() {
 }
 
 /// A descriptor of that local socket, when somebody listens.
-int connected(const std::string& path) {
-  int fd = -1;
-  EXPECT_TRUE(wait_until([&] { return (fd = connect_local(path)) >= 0; }));
+Descriptor connected(const std::string& path) {
+  Descriptor fd;
+  EXPECT_TRUE(wait_until([&] { return bool(fd = connect_local(path)); }));
   return fd;
 }
 
@@ -65,15 +65,7 @@ class Client {
       return ::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     }));
   }
-  ~Client() { close(); }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
-
-  void close() {
-    if (fd_ >= 0)
-      ::close(fd_);
-    fd_ = -1;
-  }
+  void close() { fd_.reset(); }
   void send(const Bytes& bytes) const {
     EXPECT_EQ(::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(bytes.size()));
@@ -113,7 +105,7 @@ class Client {
   }
 
  private:
-  int fd_;
+  Descriptor fd_;
   protocol::PacketParser parser_;
 };
 
@@ -189,7 +181,7 @@ TEST_F(HostTest, ServesLive) {
 TEST_F(HostTest, AStepWhileTimeIsPausedWaitsForAClient) {
   options_.view_socket = directory_ + "/view";
   start();
-  const int viewer = connected(*options_.view_socket);
+  const Descriptor viewer = connected(*options_.view_socket);
   const auto say = [&](const std::string& line) {
     EXPECT_EQ(::send(viewer, line.data(), line.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(line.size()));
@@ -209,7 +201,6 @@ TEST_F(HostTest, AStepWhileTimeIsPausedWaitsForAClient) {
   say("{\"do\":\"step\"}\n");
   client.information();
   EXPECT_TRUE(wait_until([&] { return trace().size() == 2U; }));
-  ::close(viewer);
 }
 
 // As a bridge opens a serial line, leaves, and returns.
@@ -505,7 +496,7 @@ TEST_F(HostTest, ShowsWhatTheStereoCamerasSee) {
   start();
   Client client(*options_.socket);
   client.open();
-  const int viewer = connected(*options_.stereo_socket);
+  Descriptor viewer = connected(*options_.stereo_socket);
   std::string last;
   for (int cycle = 1; cycle <= 3; ++cycle) {
     client.send(encode(protocol::Step{}));
@@ -518,12 +509,12 @@ TEST_F(HostTest, ShowsWhatTheStereoCamerasSee) {
     last = picture;
   }
   // In single step a late viewer has missed nothing.
-  const int late = connected(*options_.stereo_socket);
+  Descriptor late = connected(*options_.stereo_socket);
   for (int cycle = 1; cycle <= 3; ++cycle)
     EXPECT_EQ(next_picture(late),
               read_bytes(options_.stereo + "/00000" + std::to_string(cycle) + ".pgm"));
-  ::close(late);
-  ::close(viewer);
+  late.reset();
+  viewer.reset();
   client.send(encode(protocol::Step{}));
   client.information();
 }

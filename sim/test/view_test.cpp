@@ -138,7 +138,6 @@ class Viewer {
   Viewer(Host& host, const std::string& path) : host_(host), fd_(connect_local(path)) {
     EXPECT_GE(fd_, 0);
   }
-  ~Viewer() { ::close(fd_); }
   void say(const std::string& text) {
     const std::string line = text + "\n";
     EXPECT_EQ(::send(fd_, line.data(), line.size(), 0), static_cast<ssize_t>(line.size()));
@@ -164,7 +163,7 @@ class Viewer {
 
  private:
   Host& host_;
-  int fd_;
+  Descriptor fd_;
   std::string heard_;
 };
 

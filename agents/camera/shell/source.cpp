@@ -27,7 +27,6 @@ class SocketSource final : public Source {
     if (fd_ < 0)
       throw std::runtime_error(cannot_be(path, "reached") + " (does the simulator run?)");
   }
-  ~SocketSource() override { ::close(fd_); }
 
   int fd() const override { return fd_; }
   std::optional<Frame> read() override {
@@ -42,7 +41,7 @@ class SocketSource final : public Source {
 
  private:
   std::string path_;
-  int fd_;
+  Descriptor fd_;
   PpmStream stream_;
 };
 

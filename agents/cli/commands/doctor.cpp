@@ -10,12 +10,12 @@
 
 #include <array>
 #include <cstdlib>
-#include <cstring>
 #include <utility>
 
 #include "commands.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/printer.hpp"
 #include "saphira/security/credentials.hpp"
@@ -50,9 +50,6 @@ class Ear {
     hears_ = bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0 &&
              setsockopt(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &join, sizeof join) == 0;
   }
-  ~Ear() { close(socket_); }
-  Ear(const Ear&) = delete;
-  Ear& operator=(const Ear&) = delete;
 
   /// True where a packet to the group comes back. Programs drop it: it is no RTPS.
   bool returns() {
@@ -100,7 +97,7 @@ class Ear {
 
   const std::string address_;
   const std::uint16_t port_;
-  const int socket_;
+  const Descriptor socket_;
   bool hears_ = false;
   std::set<std::string> others_;
 };

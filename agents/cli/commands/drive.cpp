@@ -13,6 +13,7 @@
 
 #include "commands.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -93,9 +94,6 @@ termios RawTerminal::saved{};
 class Joystick {
  public:
   explicit Joystick(std::string path) : path_(std::move(path)) { open(); }
-  ~Joystick() { close(); }
-  Joystick(const Joystick&) = delete;
-  Joystick& operator=(const Joystick&) = delete;
 
   int fd() const { return fd_; }
   bool there() const { return fd_ >= 0; }
@@ -123,7 +121,7 @@ class Joystick {
       return stick_.take({bytes.data(), static_cast<std::size_t>(n)}, now);
     if (n < 0 && (errno == EAGAIN || errno == EINTR))
       return;
-    close();
+    fd_.reset();
     stick_.lost();
   }
 
@@ -142,14 +140,9 @@ class Joystick {
     button_codes.resize(std::min<std::size_t>(buttons, button_codes.size()));
     stick_.set_layout(axis_codes, button_codes);
   }
-  void close() {
-    if (fd_ >= 0)
-      ::close(fd_);
-    fd_ = -1;
-  }
 
   std::string path_;
-  int fd_ = -1;
+  Descriptor fd_;
   StickDrive stick_;
 };
 

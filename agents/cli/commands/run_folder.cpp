@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "saphira/base/archive.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::cli {
@@ -167,13 +168,6 @@ int lock(const std::string& path) {
   return lock_open(file);
 }
 
-/// The whole content of a locked file. It takes the place of the former one, which has room on a
-/// full disk. False where there is none.
-bool fill(int file, const std::string& text) {
-  return pwrite(file, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
-         ftruncate(file, static_cast<off_t>(text.size())) == 0;
-}
-
 }  // namespace
 
 RunFolder::RunFolder() {
@@ -204,19 +198,19 @@ RunFolder::RunFolder(const std::string& name, const std::string& robot, unsigned
 void RunFolder::tell() {
   if (text_.empty())
     return;
-  if (fill(lock_, text_)) {
+  if (overwrite(lock_, text_)) {
     text_.clear();
     return;
   }
   // The text of an earlier lock is not ours.
-  fill(lock_, "");
+  overwrite(lock_, "");
   mkdir(memory_folder(getuid()).c_str(), 0755);
   if (!is_folder_of(getuid(), memory_folder(getuid())))
     return;
   in_memory_ = memory_file(path_);
   const int file = open(in_memory_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file >= 0) {
-    fill(file, text_);
+    overwrite(file, text_);
     close(file);
   }
 }
@@ -278,7 +272,7 @@ FoundBus::FoundBus(const RunningBus& bus) {
     lock_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (lock_ >= 0)
       lock_ = lock_open(lock_);
-    if (lock_ >= 0 && fill(lock_, text))
+    if (lock_ >= 0 && overwrite(lock_, text))
       return;
     end();
   }
@@ -418,7 +412,7 @@ void ProgramLocks::hold(const std::string& program, const std::string& robot, un
                              ": stop that one, or take another --robot or --domain");
   }
   locks_.push_back(file);
-  fill(file, holder);  // without room the refusal of a second one names none
+  overwrite(file, holder);  // without room the refusal of a second one names none
 }
 
 }  // namespace saphira::cli

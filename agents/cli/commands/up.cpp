@@ -25,6 +25,7 @@
 #include "commands.hpp"
 #include "environment.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/bounded_log.hpp"
@@ -110,9 +111,6 @@ class RenewSignal {
     sigprocmask(SIG_BLOCK, &signals, nullptr);
     fd_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
   }
-  ~RenewSignal() { close(fd_); }
-  RenewSignal(const RenewSignal&) = delete;
-  RenewSignal& operator=(const RenewSignal&) = delete;
   int fd() const { return fd_; }
   bool came() const {
     signalfd_siginfo info;
@@ -123,7 +121,7 @@ class RenewSignal {
   }
 
  private:
-  int fd_ = -1;
+  Descriptor fd_;
 };
 
 /// The reason why a program cannot be added to the running ones; empty: it can.

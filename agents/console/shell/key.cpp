@@ -9,6 +9,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "saphira/base/descriptor.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/full_disk.hpp"
 #include "saphira/base/text.hpp"
@@ -19,12 +21,8 @@ namespace {
 
 constexpr std::size_t kBytes = 12;
 
-bool write_all(int fd, const Kept& kept) {
-  const std::string text =
-      kept.key + "\n" + (kept.port == 0 ? "" : std::to_string(kept.port) + "\n");
-  // In the place of the former one, which has room on a full disk.
-  return pwrite(fd, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
-         ftruncate(fd, static_cast<off_t>(text.size())) == 0;
+std::string text_of(const Kept& kept) {
+  return kept.key + "\n" + (kept.port == 0 ? "" : std::to_string(kept.port) + "\n");
 }
 
 }  // namespace
@@ -36,7 +34,7 @@ std::string new_key() {
 Kept keep(const std::string& file) {
   if (file.empty())
     return {new_key(), 0};
-  const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  const Descriptor fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (fd < 0)
     fail_to_be(file, "opened", "; it is for the console's key");
   struct stat state {};
@@ -50,13 +48,10 @@ Kept keep(const std::string& file) {
   bool written = true;
   if (!open_to_others && kept.key.size() < 2 * kBytes) {
     kept = {new_key(), 0};
-    written = write_all(fd, kept);
+    written = overwrite(fd, text_of(kept));
   }
-  const int why = errno;
-  close(fd);
   if (open_to_others)
     throw UnusableFile(file + ": others may read the console's key; chmod 600 it, or remove it");
-  errno = why;
   if (!written)
     fail_to_be(file, "written", "; it is for the console's key");
   return kept;
@@ -76,12 +71,8 @@ std::string read_secret(const std::string& file) {
 void keep_port(const std::string& file, const Kept& kept, int port) {
   if (file.empty() || kept.port == port)
     return;
-  const int fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
-  const bool written = fd >= 0 && write_all(fd, {kept.key, port});
-  const int why = errno;
-  close(fd);
-  errno = why;
-  if (!written)
+  const Descriptor fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0 || !overwrite(fd, text_of({kept.key, port})))
     fail_to_be(file, "written", "; it is for the console's port");
 }
 

@@ -17,13 +17,8 @@ constexpr std::size_t kLongest = 8 << 20;  // [bytes] of a line
 
 }  // namespace
 
-SimulatorLink::~SimulatorLink() {
-  disconnect();
-}
-
 void SimulatorLink::disconnect() {
-  if (fd_ >= 0)
-    ::close(std::exchange(fd_, -1));
+  fd_.reset();
   heard_.clear();
 }
 

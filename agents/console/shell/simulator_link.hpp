@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/descriptor.hpp"
+
 namespace saphira::console {
 
 /// The simulator's own view (saphira/sim/view.hpp), by its local socket: its newest lines, and
@@ -11,9 +13,6 @@ namespace saphira::console {
 class SimulatorLink {
  public:
   explicit SimulatorLink(std::string socket) : socket_(std::move(socket)) {}
-  ~SimulatorLink();
-  SimulatorLink(const SimulatorLink&) = delete;
-  SimulatorLink& operator=(const SimulatorLink&) = delete;
 
   /// Takes the input. True where there is news.
   bool poll(double now);
@@ -36,7 +35,7 @@ class SimulatorLink {
   void take(std::string line);
 
   std::string socket_;
-  int fd_ = -1;
+  Descriptor fd_;
   double tried_ = -1e9;  ///< [s]
   std::string heard_;
   Told world_;

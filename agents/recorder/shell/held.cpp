@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -32,14 +31,12 @@ void check_replaced(const std::string& file, bool overwrite) {
 
 }  // namespace
 
-int Held::locked(const std::string& path, int flags) const {
-  const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC | flags, 0644);
+Descriptor Held::locked(const std::string& path, int flags) const {
+  Descriptor fd(open(path.c_str(), O_RDWR | O_CLOEXEC | flags, 0644));
   if (fd < 0 && errno != ENOENT)
     throw std::invalid_argument(cannot_be(file_, "written"));
-  if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) != 0) {
-    close(fd);
+  if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) != 0)
     throw std::invalid_argument(file_ + ": another recorder writes it; give a new name");
-  }
   return fd;
 }
 
@@ -47,17 +44,12 @@ Held::Held(const std::string& file, bool overwrite) : file_(file), new_(file + "
   if (!file.ends_with(".mcap"))
     throw std::invalid_argument(
         file + ": expected a name that ends with .mcap, the kind of file that this writes");
-  try {
-    before_ = locked(file, 0);
-    if (before_ >= 0)
-      check_replaced(file, overwrite);
-    lock_ = locked(new_, O_CREAT);
-    if (lock_ < 0)
-      throw std::invalid_argument(cannot_be(file, "written"));
-  } catch (const std::invalid_argument&) {
-    close(before_);
-    throw;
-  }
+  before_ = locked(file, 0);
+  if (before_ >= 0)
+    check_replaced(file, overwrite);
+  lock_ = locked(new_, O_CREAT);
+  if (lock_ < 0)
+    throw std::invalid_argument(cannot_be(file, "written"));
   out_.open(new_, std::ios::binary);
   if (!out_)
     fail_to_be(file, "written");
@@ -66,8 +58,6 @@ Held::Held(const std::string& file, bool overwrite) : file_(file), new_(file + "
 Held::~Held() {
   if (!is_kept_)
     std::remove(new_.c_str());
-  close(lock_);
-  close(before_);
 }
 
 void Held::keep() {

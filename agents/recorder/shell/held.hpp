@@ -3,6 +3,8 @@
 #include <fstream>
 #include <string>
 
+#include "saphira/base/descriptor.hpp"
+
 namespace saphira::recorder {
 
 /// Holds the name of a recording, so that no second recorder writes there. A recording that is
@@ -22,13 +24,13 @@ class Held {
   void keep();
 
  private:
-  /// -1: there is none.
-  int locked(const std::string& path, int flags) const;
+  /// None: there is no such file.
+  Descriptor locked(const std::string& path, int flags) const;
 
   const std::string file_;
   const std::string new_;
-  int lock_ = -1;
-  int before_ = -1;  ///< the lock of a recording that is there
+  Descriptor lock_;
+  Descriptor before_;  ///< the lock of a recording that is there
   bool is_kept_ = false;
   std::ofstream out_;
 };

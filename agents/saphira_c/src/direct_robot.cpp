@@ -13,6 +13,7 @@
 
 #include "robot.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/bridge/core.hpp"
 #include "saphira/transport/keeper.hpp"
@@ -74,8 +75,7 @@ class DirectRobot final : public Robot {
   void end() override {
     Robot::end();
     keeper_.reset();
-    if (wake_ >= 0)
-      ::close(std::exchange(wake_, -1));
+    wake_.reset();
   }
 
  private:
@@ -272,7 +272,7 @@ class DirectRobot final : public Robot {
   bool told_limit_ = false;
 
   // Shared with the program's thread, as those of Robot.
-  int wake_ = -1;
+  Descriptor wake_;
   std::uint64_t next_session_ = 0;
   std::optional<bridge::DriveCommand> wish_;
 };

@@ -16,6 +16,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/stop_signals.hpp"
 #include "saphira/command_line/command_line.hpp"
@@ -94,9 +95,6 @@ class Proxy {
               protocol::find_parameter_file(robots, identity.robot_class, identity.subclass);
           return path ? std::optional(protocol::load_parameters(*path)) : std::nullopt;
         }) {}
-  ~Proxy() { ::close(listener_); }
-  Proxy(const Proxy&) = delete;
-  Proxy& operator=(const Proxy&) = delete;
 
   void run(int stop_fd) {
     while (true) {
@@ -107,11 +105,10 @@ class Proxy {
         return;
       if (fds[1].revents == 0)
         continue;
-      const int client = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+      const Descriptor client = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
       if (client < 0)
         continue;
       const bool stopped = converse(client, stop_fd);
-      ::close(client);
       checker_.disconnect();
       report();
       if (stopped)
@@ -166,7 +163,7 @@ class Proxy {
   }
 
   transport::Address server_;
-  int listener_;
+  Descriptor listener_;
   protocol::Checker checker_;
   std::size_t reported_ = 0;
 };

@@ -50,13 +50,12 @@ std::string Keeper::start() {
   const int error = ::posix_spawn(&pid_, program_.c_str(), &inherited.files, &inherited.attributes,
                                   argv.data(), environ);
   ::close(ends[1]);
+  socket_ = ends[0];
   if (error != 0) {
-    ::close(ends[0]);
     pid_ = -1;
     return "keeper: " + program_ + ": " + std::strerror(error);
   }
-  ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  socket_ = ends[0];
+  ::fcntl(socket_, F_SETFL, O_NONBLOCK);
   alive_ = true;
   told_ = watched_ < 0;
   unanswered_ = 0;
@@ -66,8 +65,7 @@ std::string Keeper::start() {
 /// A keeper ends by itself when it does not hear the bridge any more, after stopping its robot; a
 /// hanging one does not.
 void Keeper::end() {
-  if (socket_ >= 0)
-    ::close(std::exchange(socket_, -1));
+  socket_.reset();
   if (pid_ <= 0)
     return;
   if (!alive_)

@@ -145,9 +145,8 @@ void Link::close(const std::string& why, double now) {
       ::ioctl(fd_, TIOCNXCL);
       ::flock(fd_, LOCK_UN);
     }
-    ::close(fd_);
+    fd_.reset();
   }
-  fd_ = -1;
   look_up_.reset();
   state_ = State::closed;
   waiting_.clear();

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/enumerators.hpp"
 #include "saphira/base/format.hpp"
@@ -137,11 +138,8 @@ std::string AuditFile::write(v1::AuditEntry entry, double time) {
 
 std::string AuditFile::tend(double time) {
   // Room for the next lines on a disk that is full by then. Not every file system has that.
-  const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-  if (file >= 0) {
-    fallocate(file, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(size_), kRoom);
-    close(file);
-  }
+  const Descriptor file = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  fallocate(file, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(size_), kRoom);
   return write_waiting(time);
 }
 
@@ -170,13 +168,9 @@ bool AuditFile::keep_head() {
   if (head == head_)
     return true;
   if (!replace_file(path_ + ".head", head)) {
-    // In the place of the former one, which has room on a full disk.
     const int why = errno;
-    const int file = open((path_ + ".head").c_str(), O_WRONLY | O_CLOEXEC);
-    const bool written = file >= 0 &&
-                         pwrite(file, head.data(), head.size(), 0) == std::ssize(head) &&
-                         ftruncate(file, std::ssize(head)) == 0;
-    close(file);
+    const Descriptor file = open((path_ + ".head").c_str(), O_WRONLY | O_CLOEXEC);
+    const bool written = overwrite(file, head);
     errno = why;
     if (!written)
       return false;
@@ -195,7 +189,7 @@ std::string AuditFile::append(const std::string& act, const std::string& who,
                            act + "\t" + field(who) + "\t" + field(what);
   std::string hash = chained(text, hash_);
   const std::string line = text + "\t" + hash + "\n";
-  const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  const Descriptor file = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (file < 0)
     return cannot_be(path_, "opened");
   const ssize_t written = ::write(file, line.data(), line.size());
@@ -203,7 +197,6 @@ std::string AuditFile::append(const std::string& act, const std::string& who,
   const std::string trouble = whole ? "" : cannot_be(path_, "written");
   if (!whole && written > 0 && ftruncate(file, static_cast<off_t>(size_)) != 0)
     size_ = most_ + 1;  // half a line stays: the next one begins a part
-  close(file);
   if (!whole)
     return trouble;
   size_ += line.size();

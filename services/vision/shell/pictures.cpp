@@ -81,14 +81,13 @@ bool Pictures::pause(int milliseconds) const {
 
 void Pictures::run() {
   do {
-    const int fd = connect_local(path_);
+    const Descriptor fd = connect_local(path_);
     if (fd < 0) {
       say(false, path_ + ": " + std::strerror(errno));
       continue;
     }
     say(true, "");
     read(fd);
-    ::close(fd);
   } while (!pause(kRetry));
 }
 

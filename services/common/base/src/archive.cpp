@@ -1,6 +1,5 @@
 #include "saphira/base/archive.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>

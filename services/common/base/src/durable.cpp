@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "saphira/base/descriptor.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -28,16 +29,9 @@ std::string sum_of(std::string_view text) {
   return hash.text().substr(0, kSum);
 }
 
-/// Closes itself.
 class File {
  public:
   File(const std::string& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
-  ~File() {
-    if (fd_ >= 0)
-      ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
 
   bool write(std::string_view text) const {
     if (fd_ < 0)
@@ -54,7 +48,7 @@ class File {
   bool sync() const { return ::fsync(fd_) == 0; }
 
  private:
-  int fd_;
+  Descriptor fd_;
 };
 
 }  // namespace
@@ -164,6 +158,11 @@ bool replace_file(const std::string& path, std::string_view text, bool sync) {
   if (!sync)
     return true;
   return File(folder_of(path), O_RDONLY | O_DIRECTORY).sync();
+}
+
+bool overwrite(int fd, std::string_view text) {
+  const auto size = static_cast<ssize_t>(text.size());
+  return ::pwrite(fd, text.data(), text.size(), 0) == size && ::ftruncate(fd, size) == 0;
 }
 
 }  // namespace saphira

@@ -2,28 +2,24 @@
 
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 namespace saphira {
 
-int connect_local(const std::string& path, int flags) {
+Descriptor connect_local(const std::string& path, int flags) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) {
     errno = ENAMETOOLONG;
-    return -1;
+    return {};
   }
   std::memcpy(address.sun_path, path.data(), path.size());
-  const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0);
+  Descriptor fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0);
   if (::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
     return fd;
-  const int error = errno;
-  ::close(fd);
-  errno = error;
-  return -1;
+  return {};
 }
 
 }  // namespace saphira

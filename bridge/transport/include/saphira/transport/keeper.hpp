@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/descriptor.hpp"
 
 namespace saphira::transport {
 
@@ -46,7 +47,7 @@ class Keeper {
 
   std::chrono::milliseconds silence_;
   std::string program_;
-  int socket_ = -1;
+  Descriptor socket_;
   int pid_ = -1;
   bool alive_ = false;
   int unanswered_ = 0;  ///< heartbeats

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/descriptor.hpp"
 #include "saphira/transport/address.hpp"
 
 namespace saphira::transport {
@@ -60,7 +61,7 @@ class Link {
 
   Address address_;
   State state_ = State::closed;
-  int fd_ = -1;
+  Descriptor fd_;
   std::string trouble_ = "not connected yet";
   double next_try_ = 0.0;
   double give_up_ = 0.0;

@@ -38,6 +38,10 @@ std::string read_or_set_aside(const std::string& path,
 /// a device, pipe or socket: ENOTSUP).
 bool replace_file(const std::string& path, std::string_view text, bool sync = false);
 
+/// The whole content of an open file, in the place of the former one: that has room on a full disk.
+/// False, with errno, where it cannot be written.
+bool overwrite(int fd, std::string_view text);
+
 /// True where replace_file could begin to write the file, which stays as it is. Otherwise errno
 /// gives the reason. Where files stay, no file is begun beside it: its folder tells.
 bool can_replace_file(const std::string& path, Files files = Files::kChange);

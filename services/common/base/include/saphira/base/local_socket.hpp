@@ -2,10 +2,12 @@
 
 #include <string>
 
+#include "saphira/base/descriptor.hpp"
+
 namespace saphira {
 
-/// A descriptor that is connected to the local socket of that path; -1 with errno where nobody
-/// listens. The caller closes it. `flags`: of socket(), such as SOCK_NONBLOCK.
-int connect_local(const std::string& path, int flags = 0);
+/// A descriptor that is connected to the local socket of that path; none with errno where nobody
+/// listens. `flags`: of socket(), such as SOCK_NONBLOCK.
+Descriptor connect_local(const std::string& path, int flags = 0);
 
 }  // namespace saphira
