@@ -13,17 +13,7 @@
 
 namespace saphira::test {
 
-namespace {
-
-bus::NodeOptions in_lockstep(const std::string& robot) {
-  bus::NodeOptions options = node_options("test", robot);
-  options.lockstep = true;
-  return options;
-}
-
-}  // namespace
-
-LockstepSystem::LockstepSystem(const Scene& scene) : node(in_lockstep(robot)) {
+LockstepSystem::LockstepSystem(const Scene& scene) : node(node_options("test", robot, true)) {
   const std::string world = folder.path("world.wld");
   std::ofstream(world) << scene.world;
   const std::string map = scene.map.empty() ? "none" : source("config/maps/" + scene.map + ".map");

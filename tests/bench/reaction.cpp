@@ -212,7 +212,7 @@ int main(int argc, char** argv) {
     const bench::Child behaviors({"saphira-behaviors", "--robot", name, "--domain", domain});
     robot.connect();
 
-    bus::Node node(test::node_options("bench", name, domain));
+    bus::Node node(test::node_options("bench", name, false, domain));
     Reaction reaction(node, robot);
 
     const auto period = std::chrono::duration<double>(1.0 / hz);

@@ -18,9 +18,9 @@ inline bus::NodeOptions memory_options(const std::string& name, bool lockstep = 
 
 /// For a node on a domain: the test's own, unless another is given.
 inline bus::NodeOptions node_options(const std::string& name, const std::string& robot,
+                                     bool lockstep = false,
                                      const std::string& on_domain = domain()) {
-  bus::NodeOptions options;
-  options.name = name;
+  bus::NodeOptions options = memory_options(name, lockstep);
   options.robot = robot;
   options.domain = static_cast<std::uint32_t>(std::stoul(on_domain));
   return options;

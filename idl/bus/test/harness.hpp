@@ -29,8 +29,8 @@ class OnEachBus : public testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Node> node(const std::string& name, const std::string& robot_name = "",
                              bool lockstep = false) {
-    NodeOptions options = node_options(name, robot_name.empty() ? robot("a") : robot_name);
-    options.lockstep = lockstep;
+    const NodeOptions options =
+        node_options(name, robot_name.empty() ? robot("a") : robot_name, lockstep);
     return GetParam() == "dds" ? std::make_unique<Node>(options)
                                : std::make_unique<Node>(options, memory_);
   }

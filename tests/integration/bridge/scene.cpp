@@ -12,20 +12,10 @@
 
 namespace saphira::test {
 
-namespace {
-
 using std::chrono::milliseconds;
 
-bus::NodeOptions tester(const std::string& robot, bool lockstep) {
-  bus::NodeOptions options = node_options("test", robot);
-  options.lockstep = lockstep;
-  return options;
-}
-
-}  // namespace
-
 Scene::Scene(bool lockstep)
-    : node(tester(robot, lockstep)),
+    : node(node_options("test", robot, lockstep)),
       lockstep_(lockstep),
       states_(node.reader(bus::topics::kRobotState)),
       descriptions_(node.reader(bus::topics::kRobotDescription)),
