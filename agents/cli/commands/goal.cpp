@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -346,14 +345,12 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
   }
   if (!known->trouble.empty())
     std::printf("%s\n", known->trouble.c_str());
-  if (!any && options.words.size() == 2) {
-    std::cerr << "saphira: there is no activity \"" << options.words[1] << '"'
-              << did_you_mean(options.words[1], names, "; saphira goal activities lists them")
-              << '\n';
-  } else if (!any) {
-    std::cerr << "saphira: there are no activities\n";
-  }
-  return any ? bus::kExitOk : bus::kExitFailed;
+  if (any)
+    return bus::kExitOk;
+  if (options.words.size() < 2)
+    return failed("there are no activities");
+  return failed("there is no activity \"" + options.words[1] + '"' +
+                did_you_mean(options.words[1], names, "; saphira goal activities lists them"));
 }
 
 }  // namespace

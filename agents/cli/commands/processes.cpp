@@ -1,6 +1,5 @@
 // processes: the micro-tasks of the services (manual 2.3.7 and 6.5).
 #include <cstdio>
-#include <iostream>
 #include <stdexcept>
 
 #include "commands.hpp"
@@ -30,11 +29,8 @@ int list_processes(const bus::NodeOptions& options, const bus::Stop& stop) {
   Mind mind(node, false);
   mind.listen(kProcessesListen, stop);
   const std::string text = processes_table(mind.services());
-  if (text.empty()) {
-    std::cerr << "saphira: no service tells its processes; " << who_is_there(mind.processes())
-              << '\n';
-    return bus::kExitFailed;
-  }
+  if (text.empty())
+    return failed("no service tells its processes; " + who_is_there(mind.processes()));
   std::fputs(text.c_str(), stdout);
   return bus::kExitOk;
 }

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <iostream>
 #include <stdexcept>
 #include <string>
 
@@ -267,8 +266,7 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
     if (writer.matched() > 0)
       taken_back = writer.dispose(sample) || taken_back;
   }
-  std::cerr << "saphira: it is still taken for true; " << who_is_there(mind.processes()) << '\n';
-  return bus::kExitFailed;
+  return failed("it is still taken for true; " + who_is_there(mind.processes()));
 }
 
 void check_value(const std::string& value) {
@@ -314,11 +312,9 @@ int claim(const std::string& name, const std::string& value, bool hold,
       }
       return bus::kExitOk;
     }
-    if (seconds_since(began) > kMindPatience) {
-      std::cerr << "saphira: nobody has taken it for true (saphira log says why); "
-                << who_is_there(mind.processes()) << '\n';
-      return bus::kExitFailed;
-    }
+    if (seconds_since(began) > kMindPatience)
+      return failed("nobody has taken it for true (saphira log says why); " +
+                    who_is_there(mind.processes()));
   }
   return bus::kExitFailed;
 }
