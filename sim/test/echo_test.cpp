@@ -1,7 +1,6 @@
 // Echoes of thin, round and clothed things.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <string>
 
 #include "process.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "key.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/format.hpp"
 #include "saphira/base/text.hpp"

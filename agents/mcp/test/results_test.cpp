@@ -1,7 +1,6 @@
 // Results of tools about the robot: the questions and answers of results.txt.
 #include "saphira/mcp/results.hpp"
 
-#include <functional>
 #include <map>
 
 #include "asked.hpp"

@@ -1,6 +1,5 @@
 #include "saphira/authority/coverage.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "lines.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/random.hpp"

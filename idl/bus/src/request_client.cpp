@@ -1,6 +1,5 @@
 #include "saphira/bus/request_client.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>

@@ -1,7 +1,6 @@
 #include "saphira/interpretation/side_view.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace saphira::interpretation {
 namespace {

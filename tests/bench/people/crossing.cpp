@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"

@@ -1,8 +1,6 @@
 // The robot behind a serial line at 9600 baud: faults of the line, and their effect for the user.
 #include <gtest/gtest.h>
 
-#include <csignal>
-
 #include "scene.hpp"
 #include "serial_line.hpp"
 

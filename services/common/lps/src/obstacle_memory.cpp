@@ -1,6 +1,5 @@
 #include "saphira/lps/obstacle_memory.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>

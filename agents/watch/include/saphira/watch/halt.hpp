@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "saphira/idl/request.hpp"
 
 namespace saphira::watch {
