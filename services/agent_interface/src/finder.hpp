@@ -11,7 +11,7 @@
 
 namespace saphira::agent_interface {
 
-/// What a pattern may begin or end with, beside its own words.
+/// Signs for what a pattern may begin or end with, beside its own words.
 inline constexpr const char* kAnyText = "...";
 inline constexpr const char* kAnyName = "{}";
 inline constexpr const char* kAnyNumber = "<number>";
