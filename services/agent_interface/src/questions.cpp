@@ -226,7 +226,8 @@ const Dialogue::Words* Dialogue::words_of_speaker(const std::string& name) const
   return found == words_.end() ? nullptr : &*found;
 }
 
-std::string Dialogue::sources(const Meaning& meaning, const Utterance& utterance) const {
+std::string Dialogue::sources(const Meaning& meaning, const Utterance& utterance,
+                              const Situation& situation) const {
   const std::string about = slot(meaning, "about");
   const Words* const newest = words_of_speaker(utterance.speaker);
   const auto is_meant = [&](const Advice& one) {
@@ -235,10 +236,16 @@ std::string Dialogue::sources(const Meaning& meaning, const Utterance& utterance
     return newest != nullptr && (newest->answer.find(describe(one)) != std::string::npos ||
                                  newest->answer.find(as_told(one)) != std::string::npos);
   };
+  const std::string value = slot(meaning, "place");
+  bool told = value.empty();
   std::string all;
   for (const Advice& one : knowledge_.all())
-    if (is_meant(one))
+    if (is_meant(one)) {
       all += (all.empty() ? "" : "; ") + source_of(one);
+      told = told || one.about == "the " + value || one.value == place(value, situation);
+    }
+  if (!told && !all.empty())
+    all = "that I do not know; " + all;
   return !all.empty()    ? all
          : about.empty() ? "tell me which fact: ask who told you about, and a name"
                          : "nobody has told me anything about " + about;
@@ -286,7 +293,7 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
   } else if (functor == "how_long") {
     say(utterance, time_left(situation), true, out);
   } else if (functor == "told_by") {
-    say(utterance, sources(meaning, utterance), true, out);
+    say(utterance, sources(meaning, utterance, situation), true, out);
   } else if (functor == "what_said") {
     const std::string who = slot(meaning, "who");
     const bool own = who == "me" || who == "robot";

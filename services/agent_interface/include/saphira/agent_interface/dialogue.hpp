@@ -295,7 +295,8 @@ class Dialogue {
   void note_words(const Utterance& utterance, const Outputs& out);
   const Words* words_of_speaker(const std::string& name) const;
   /// The sources of the facts in the newest answer to this speaker, or of those about somebody.
-  std::string sources(const Meaning& meaning, const Utterance& utterance) const;
+  std::string sources(const Meaning& meaning, const Utterance& utterance,
+                      const Situation& situation) const;
   /// The time that the rest of the way takes, by the map.
   std::string time_left(const Situation& situation) const;
   /// The reason for which the robot stands or drives.
