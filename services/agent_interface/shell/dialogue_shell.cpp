@@ -234,9 +234,16 @@ void DialogueShell::take_goals(double seconds) {
   goals_.poll();
   for (const auto& sample : wanted_.take())
     if (sample.info.disposed)
-      others_.erase(sample.data.id);
+      withdrawn_.push_back(sample.data.id);
     else if (sample.data.id.writer != node_.instance())
       others_[sample.data.id] = sample.data;
+  // The status tells of the end for a while, without the arguments.
+  std::erase_if(withdrawn_, [&](const v1::GoalId& id) {
+    const bool over = !goals_.status(id);
+    if (over)
+      others_.erase(id);
+    return over;
+  });
   std::vector<Outcome> ended;
   std::vector<std::uint64_t> without_status;
   for (const auto& [tag, id] : asked_) {

@@ -82,6 +82,7 @@ class DialogueShell {
   v1::Vision seen_;                                 ///< the newest
   std::map<std::uint64_t, v1::GoalId> asked_;       ///< by the dialogue's tag
   std::map<v1::GoalId, v1::Goal> others_;           ///< the goals of other programs
+  std::vector<v1::GoalId> withdrawn_;               ///< those of them that their programs withdrew
   std::map<std::uint64_t, std::string> orphans_;    ///< goals of before the restart, by tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
   std::uint64_t number_ = 0;

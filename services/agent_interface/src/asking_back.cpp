@@ -221,6 +221,7 @@ std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question&
   const auto key = std::find_first_of(said.begin(), said.end(), keywords.begin(), keywords.end());
   const auto first = static_cast<std::size_t>(key - said.begin()) + 1;
   constexpr std::size_t kMostWords = 4;
+  std::size_t work = 0;
   for (std::size_t length = 1; length <= kMostWords && found.empty(); ++length)
     for (std::size_t at = first; at + length <= said.size(); ++at) {
       std::string changed = keywords.front();
@@ -231,6 +232,8 @@ std::vector<std::pair<Meaning, std::string>> Dialogue::corrected(const Question&
           changed += (said[i] == "'s" ? "" : " ") + said[i];
       }
       const Grammar::Understood again = grammar_.understand(changed);
+      if ((work += again.work) > Grammar::kMostWork)
+        return {};
       if (again.meanings.size() != 1 || !again.then.empty())
         continue;
       const Meaning& now = again.meanings.front();

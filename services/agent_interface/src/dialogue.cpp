@@ -62,11 +62,15 @@ bool name_speaker(Grammar::Understood& understood, const std::string& speaker) {
   return named;
 }
 
-/// Facts about a thing are those about a person with the name "the printer".
+/// Facts about a thing are those about a person with the name "the printer". "Her office" is that
+/// of the person.
 void name_things(std::vector<Meaning>& meanings) {
-  for (Meaning& meaning : meanings)
+  for (Meaning& meaning : meanings) {
     if (const auto thing = meaning.slots.extract("thing"))
       meaning.slots["person"] = "the " + thing.mapped();
+    if (slot(meaning, "owner") == "self")
+      meaning.slots["owner"] = slot(meaning, "person");
+  }
 }
 
 }  // namespace
@@ -471,7 +475,24 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
 }
 
 Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& situation) {
-  return changing([&](Outputs& out) { take_in(utterance, situation, out); });
+  Outputs out = changing([&](Outputs& more) { take_in(utterance, situation, more); });
+  note_words(utterance, out);
+  return out;
+}
+
+void Dialogue::note_words(const Utterance& utterance, const Outputs& out) {
+  constexpr std::size_t kMostSpeakers = 16;
+  Words words{utterance.speaker, utterance.text, ""};
+  for (const Said& one : out.said)
+    if (same_person(one.listener, utterance.speaker))
+      words.answer += (words.answer.empty() ? "" : ". ") + one.text;
+  if (words.answer.empty())
+    return;  // it was to somebody else
+  std::erase_if(words_,
+                [&](const Words& one) { return same_person(one.speaker, utterance.speaker); });
+  words_.push_back(std::move(words));
+  if (words_.size() > kMostSpeakers)
+    words_.erase(words_.begin());
 }
 
 void Dialogue::take_in(const Utterance& utterance, const Situation& situation, Outputs& out) {

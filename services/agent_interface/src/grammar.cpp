@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <set>
 
+#include "finder.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
 namespace {
 
 constexpr std::size_t kLongestUtterance = 40;  // words; a longer one is no command
-constexpr std::size_t kLongestName = 4;        // words: "EJ two thirty one"
-constexpr std::size_t kMostMatches = 1000;
-constexpr std::size_t kMostSteps = 8;    // of a sequence
-constexpr int kMostAsides = 3;           // of an order
-constexpr std::size_t kMostTries = 100;  // to understand a sentence without its asides
+constexpr int kMostAsides = 3;                 // of an order
 /// Units behind a number without a blank, and their words in the grammars.
 constexpr std::array<std::pair<const char*, const char*>, 7> kUnits{{{"m", "meters"},
                                                                      {"cm", "cm"},
@@ -28,14 +24,6 @@ constexpr std::array<std::pair<const char*, const char*>, 7> kUnits{{{"m", "mete
 /// Short forms, and the words in the grammars.
 constexpr std::array<std::pair<const char*, const char*>, 4> kShort{
     {{"pls", "please"}, {"plz", "please"}, {"thx", "thanks"}, {"deg", "degrees"}}};
-
-bool is_number(const std::string& word) {
-  return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0 &&
-         std::all_of(
-             word.begin(), word.end(),
-             [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.'; }) &&
-         std::count(word.begin(), word.end(), '.') <= 1;
-}
 
 /// Letters as names are compared, and the signs of typographers as those of a keyboard.
 std::string plain(std::string_view said) {
@@ -63,6 +51,14 @@ bool is_subject(const std::string& word) {
 }
 
 }  // namespace
+
+bool is_number(const std::string& word) {
+  return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0 &&
+         std::all_of(
+             word.begin(), word.end(),
+             [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.'; }) &&
+         std::count(word.begin(), word.end(), '.') <= 1;
+}
 
 bool is_letter(char c) {
   const auto byte = static_cast<unsigned char>(c);
@@ -143,19 +139,6 @@ std::vector<std::string> words_and_commas_of(std::string_view said) {
   return words;
 }
 
-std::vector<std::string> without_commas(std::vector<std::string> words) {
-  std::erase(words, kComma);
-  return words;
-}
-
-/// Words as people write them: "karen's office".
-std::string joined(const std::vector<std::string>& words, std::size_t from) {
-  std::string text;
-  for (std::size_t i = from; i < words.size(); ++i)
-    text += (text.empty() || words[i] == "'s" ? "" : " ") + words[i];
-  return text;
-}
-
 bool has_rest(const Grammar::Node& node) {
   return node.kind == Grammar::Node::Kind::rest ||
          std::any_of(node.parts.begin(), node.parts.end(), has_rest);
@@ -163,151 +146,32 @@ bool has_rest(const Grammar::Node& node) {
 
 }  // namespace
 
+std::vector<std::string> without_commas(std::vector<std::string> words) {
+  std::erase(words, kComma);
+  return words;
+}
+
 std::vector<std::string> words_of(std::string_view text) {
   return without_commas(words_and_commas_of(text));
 }
 
-std::vector<Grammar::Match> Grammar::entry(const Node& node, const std::vector<std::string>& words,
-                                           const Match& from) const {
-  std::vector<Match> matches;
-  if (node.kind == Node::Kind::number && from.end < words.size() && is_number(words[from.end])) {
-    matches.push_back(from);
-    matches.back().end += 1;
-    matches.back().slots[node.slot] = words[from.end];
-  }
-  const auto list = lists_.find(node.text);
-  if (list == lists_.end())
-    return matches;
-  for (const Entry& one : list->second) {
-    if (words.size() - from.end < one.words.size() ||
-        !std::equal(one.words.begin(), one.words.end(),
-                    words.begin() + static_cast<std::ptrdiff_t>(from.end)))
-      continue;
-    Match match = from;
-    match.end += one.words.size();
-    match.literal += one.words.size();
-    if (!node.slot.empty())
-      match.slots[node.slot] = one.value;
-    matches.push_back(std::move(match));
-  }
-  if (node.kind == Node::Kind::number)
-    if (const auto decimal = this->decimal(words, from.end)) {
-      matches.push_back(from);
-      matches.back().end += decimal->first;
-      matches.back().literal += decimal->first;
-      matches.back().slots[node.slot] = decimal->second;
-    }
-  return matches;
-}
-
-/// "One point two five": its number of words, and "1.25".
-std::optional<std::pair<std::size_t, std::string>> Grammar::decimal(
-    const std::vector<std::string>& words, std::size_t at) const {
-  const auto value = [&](const std::string& list, std::size_t i) -> std::string {
-    if (i < words.size() && is_number(words[i]))
-      return words[i];
-    if (const auto found = lists_.find(list); i < words.size() && found != lists_.end())
-      for (const Entry& one : found->second)
-        if (one.words.size() == 1 && one.words.front() == words[i])
-          return one.value;
-    return {};
-  };
-  std::string text = value("digit", at);
-  if (text.empty())
-    text = value("number", at);
-  if (text.empty() || at + 1 >= words.size() || words[at + 1] != "point")
-    return std::nullopt;
-  std::size_t end = at + 2;
-  text += ".";
-  for (std::string digit = value("digit", end); !digit.empty(); digit = value("digit", end)) {
-    text += digit;
-    ++end;
-  }
-  if (end == at + 2 || !is_number(text))
-    return std::nullopt;
-  return std::pair(end - at, text);
-}
-
-/// A name is any word without another use. The grammar does not check that such a place or person
-/// exists.
-std::vector<Grammar::Match> Grammar::name(const Node& node, const std::vector<std::string>& words,
-                                          const Match& from) const {
-  std::vector<Match> matches;
-  std::string text;
-  for (std::size_t length = 1; length <= kLongestName && from.end + length <= words.size();
-       ++length) {
-    const std::string& word = words[from.end + length - 1];
-    if (word == "'s" || std::find(no_names_.begin(), no_names_.end(), word) != no_names_.end() ||
-        std::find(keywords_.begin(), keywords_.end(), word) != keywords_.end())
-      break;
-    text += (text.empty() ? "" : " ") + word;
-    matches.push_back(from);
-    matches.back().end += length;
-    matches.back().slots[node.slot] = text;
-  }
-  return matches;
-}
-
-std::vector<Grammar::Match> Grammar::sequence(const std::vector<Node>& parts,
-                                              const std::vector<std::string>& words,
-                                              const Match& from) const {
-  std::vector<Match> matches{from};
-  for (const Node& part : parts) {
-    std::vector<Match> next;
-    for (const Match& match : matches) {
-      const std::vector<Match> more = this->match(part, words, match);
-      next.insert(next.end(), more.begin(), more.end());
-      if (next.size() > kMostMatches)
-        return {};
-    }
-    matches = std::move(next);
-  }
-  return matches;
-}
-
-std::vector<Grammar::Match> Grammar::match(const Node& node, const std::vector<std::string>& words,
-                                           const Match& from) const {
-  std::vector<Match> matches;
-  switch (node.kind) {
-    case Node::Kind::word:
-      if (from.end < words.size() && words[from.end] == node.text) {
-        matches.push_back(from);
-        ++matches.back().end;
-        ++matches.back().literal;
-      }
-      return matches;
-    case Node::Kind::list:
-    case Node::Kind::number:
-      return entry(node, words, from);
-    case Node::Kind::name:
-      return name(node, words, from);
-    case Node::Kind::rest:
-      if (from.end < words.size()) {
-        matches.push_back(from);
-        std::string& text = matches.back().slots[node.slot];
-        text += (text.empty() ? "" : " ") + joined(words, from.end);
-        matches.back().end = words.size();
-      }
-      return matches;
-    case Node::Kind::sequence:
-      return sequence(node.parts, words, from);
-    case Node::Kind::optional:
-      matches = match(node.parts.front(), words, from);
-      matches.push_back(from);
-      return matches;
-    case Node::Kind::choice:
-      for (const Node& part : node.parts) {
-        const std::vector<Match> more = match(part, words, from);
-        matches.insert(matches.end(), more.begin(), more.end());
-      }
-      return matches;
-  }
-  return matches;
-}
-
 Grammar::Understood Grammar::understand(std::string_view text, bool replies) const {
+  Finder finder(*this);
+  const Urgent urgent = this->urgent(text, finder);
+  Understood result = understand(text, replies, urgent, finder);
+  // With a part of the readings a sentence may seem to have another meaning.
+  if (finder.is_spent()) {
+    result = {result.addressed, false, false, {}};
+    if (urgent.meaning)
+      result.meanings = {*urgent.meaning};
+  }
+  result.work = finder.work;
+  return result;
+}
+
+Grammar::Understood Grammar::understand(std::string_view text, bool replies, const Urgent& urgent,
+                                        Finder& finder) const {
   Understood result;
-  const Urgent urgent = this->urgent(text);
   if (urgent.meaning && urgent.alone)
     return {true, false, false, {*urgent.meaning}};
   std::vector<std::string> said = words_and_commas_of(text);
@@ -341,15 +205,16 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
   }
   // With the keyword a sentence is meant for the robot, whatever it has asked.
   const auto whole = [&](const std::vector<std::string>& sentence) {
-    result.meanings = look(without_commas(sentence), result.addressed, replies, Use::command);
+    result.meanings =
+        finder.look(without_commas(sentence), result.addressed, replies, Use::command);
     if (!result.addressed)
       return;
     // Of several ways to divide it, the one with the fewest steps.
     const bool counted = sentence.size() > 1 && sentence.front() == "first";
     const std::vector<std::string> steps(sentence.begin() + (counted ? 1 : 0), sentence.end());
-    std::vector<std::vector<Meaning>> ways = divided(steps, {}, false);
+    std::vector<std::vector<Meaning>> ways = finder.divided(steps, {}, false);
     if (result.meanings.empty() && ways.empty())
-      ways = divided(steps, {}, true);
+      ways = finder.divided(steps, {}, true);
     std::stable_sort(ways.begin(), ways.end(),
                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
     if (result.meanings.empty()) {
@@ -363,15 +228,13 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     if (!ways.empty() && takes_text(last.functor))
       result.apart = ways.front();
   };
-  // "In ten minutes go home", "go home at five", "go home, but not through the lobby". The tries
-  // are bounded: a person may say "slowly" twenty times, and the stop behind it has to be heard.
-  std::set<std::pair<int, std::vector<std::string>>> tried;
+  // "In ten minutes go home", "go home at five", "go home, but not through the lobby".
   const auto with_asides = [&](const auto& again, const std::vector<std::string>& sentence,
                                int others) -> bool {
     for (const Use use : {Use::timed, Use::during})
-      for (auto& [aside, rest] : asides(sentence, use)) {
-        if (tried.size() >= kMostTries || !tried.emplace(others, rest).second)
-          continue;
+      for (auto& [aside, rest] : finder.asides(sentence, use)) {
+        if (finder.is_spent())
+          return false;
         if (others > 0) {
           if (!again(again, rest, others - 1))
             continue;
@@ -409,13 +272,13 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     }
   }
   if (result.meanings.empty() && words.size() <= kLongestUtterance)
-    result.meanings = look(words, result.addressed, replies, Use::reply);
+    result.meanings = finder.look(words, result.addressed, replies, Use::reply);
   if (result.meanings.empty() && urgent.meaning)
     result.meanings = {*urgent.meaning};
   else if (result.meanings.empty() && result.addressed && order.size() <= kLongestUtterance)
     for (int others = 0; others < kMostAsides && !with_asides(with_asides, order, others);)
       ++others;
-  const std::vector<Meaning> as_reply = look(words, false, true, Use::reply);
+  const std::vector<Meaning> as_reply = finder.look(words, false, true, Use::reply);
   if (result.meanings.empty() && result.addressed)
     result.bare = as_reply;
   else if (replies && as_reply.size() == 1)
@@ -447,34 +310,6 @@ bool Grammar::make_plain_order(std::vector<std::string>& words) const {
   return false;
 }
 
-std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool addressed,
-                                   bool replies, Use use) const {
-  std::vector<Meaning> meanings;
-  std::size_t best = 0;
-  for (const Rule& rule : rules_) {
-    const bool same = rule.use == use || (use == Use::command && rule.use == Use::typed);
-    if (!same || (use == Use::reply ? !replies : !addressed))
-      continue;
-    for (const Node& pattern : rule.patterns)
-      for (const Match& match : this->match(pattern, words, {})) {
-        // A mere name is a reply, not a word to the robot by its name.
-        if ((match.end != words.size() && use != Use::urgent) || match.literal < best ||
-            (match.literal == 0 && addressed))
-          continue;
-        Meaning meaning = rule.meaning;
-        for (const auto& [slot, value] : match.slots)
-          meaning.slots[slot] = value;
-        // The meaning whose pattern explains more of the words is better.
-        if (match.literal > best)
-          meanings.clear();
-        best = match.literal;
-        if (std::find(meanings.begin(), meanings.end(), meaning) == meanings.end())
-          meanings.push_back(std::move(meaning));
-      }
-  }
-  return meanings;
-}
-
 bool Grammar::is_step(const Meaning& meaning) const {
   return std::find(steps_.begin(), steps_.end(), meaning.functor) != steps_.end();
 }
@@ -504,30 +339,6 @@ std::vector<std::string> Grammar::completed(const std::vector<std::string>& befo
   return whole;
 }
 
-std::vector<std::pair<Meaning, std::vector<std::string>>> Grammar::asides(
-    const std::vector<std::string>& words, Use use) const {
-  std::vector<std::pair<Meaning, std::vector<std::string>>> found;
-  const auto note = [&](std::size_t from, std::size_t to) {
-    const auto at = [&](std::size_t i) { return words.begin() + static_cast<std::ptrdiff_t>(i); };
-    const std::vector<Meaning> meanings =
-        look(without_commas({at(from), at(to)}), true, false, use);
-    std::vector<std::string> rest(words.begin(), at(from));
-    rest.insert(rest.end(), at(to), words.end());
-    while (!rest.empty() && rest.front() == kComma)
-      rest.erase(rest.begin());
-    if (meanings.size() == 1 && !rest.empty())
-      found.emplace_back(meanings.front(), std::move(rest));
-  };
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    note(0, i);
-    note(i, words.size());
-  }
-  for (std::size_t i = 1; use == Use::during && i + 1 < words.size(); ++i)
-    for (std::size_t end = i + 1; end < words.size(); ++end)
-      note(i, end);  // "go slowly to the lobby"
-  return found;
-}
-
 /// The number of words and commas there that join two sentences: a comma, "and", "then", ", and
 /// after that,"; 0: none.
 std::size_t Grammar::joint(const std::vector<std::string>& words, std::size_t at) const {
@@ -548,74 +359,10 @@ std::size_t Grammar::joint(const std::vector<std::string>& words, std::size_t at
   return next - at;
 }
 
-std::vector<Meaning> Grammar::steps_in(std::vector<std::string>& sentence,
-                                       const std::vector<std::string>& before) const {
-  sentence = without_commas(std::move(sentence));
-  if (sentence.empty())
-    return {};
-  std::vector<Meaning> meanings;
-  if (!before.empty())
-    meanings = look(sentence, true, false, Use::later);
-  if (meanings.empty())
-    meanings = look(sentence, true, false, Use::command);
-  const auto one_step = [&] { return meanings.size() == 1 && is_step(meanings.front()); };
-  if (auto all = completed(before, sentence);
-      !all.empty() && (!one_step() || sentence.size() == 1)) {
-    std::vector<Meaning> again = look(all, true, false, Use::command);
-    if (!one_step() || !again.empty()) {
-      if (again.size() == 1 && takes_text(again.front().functor))
-        return {};
-      meanings = std::move(again);
-      sentence = std::move(all);
-    }
-  }
-  if (one_step())
-    return meanings;
-  if (meanings.empty())
-    for (auto& [often, rest] : asides(sentence, Use::times))
-      if (meanings = steps_in(rest, before); meanings.size() == 1) {
-        const auto times = static_cast<std::size_t>(std::min(number_of(often, "count"), 99.0));
-        sentence = std::move(rest);
-        return std::vector<Meaning>(times, meanings.front());
-      }
-  return {};
-}
-
-std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string>& words,
-                                                   const std::vector<std::string>& before,
-                                                   bool runs_on) const {
-  std::vector<std::vector<Meaning>> ways;
-  const bool first = before.empty();
-  std::vector<std::string> all = words;
-  if (std::vector<Meaning> last = steps_in(all, before);
-      last.size() > (first ? 1U : 0U) && last.size() <= kMostSteps)
-    ways.push_back(std::move(last));
-  for (std::size_t i = 1; i + 1 < words.size(); ++i) {
-    const std::size_t between = joint(words, i);
-    if (i + between >= words.size() || joint(words, i - 1) > 1)
-      continue;
-    if (between == 0 &&
-        (!runs_on || i < 2 || i + 2 > words.size() || words[i] == "to" || words[i] == "the"))
-      continue;
-    const auto at = words.begin() + static_cast<std::ptrdiff_t>(i);
-    std::vector<std::string> sentence(words.begin(), at);
-    const std::vector<Meaning> head = steps_in(sentence, before);
-    if (head.empty())
-      continue;
-    const auto next = at + static_cast<std::ptrdiff_t>(between);
-    for (std::vector<Meaning>& rest : divided({next, words.end()}, sentence, runs_on)) {
-      rest.insert(rest.begin(), head.begin(), head.end());
-      if (rest.size() <= kMostSteps)
-        ways.push_back(std::move(rest));
-    }
-  }
-  return ways;
-}
-
 bool Grammar::takes_text(const std::string& functor) const {
   return std::any_of(rules_.begin(), rules_.end(), [&](const Rule& rule) {
     return rule.meaning.functor == functor &&
-           std::any_of(rule.patterns.begin(), rule.patterns.end(), has_rest);
+           std::ranges::any_of(rule.patterns, has_rest, &Pattern::node);
   });
 }
 
@@ -687,7 +434,7 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
   for (const Rule& rule : rules_)
     if (rule.use == Use::command || rule.use == Use::urgent || rule.use == Use::alone ||
         (rule.use == Use::reply && replies))
-      for (const Node& pattern : rule.patterns)
+      for (const auto& [pattern, ends] : rule.patterns)
         if (pattern.kind == Node::Kind::choice || !has_rest(pattern))
           maker.lead(pattern,
                      rule.use == Use::reply   ? WordGraph::kStart
@@ -695,10 +442,6 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
                                               : WordGraph::kAddressed,
                      WordGraph::kEnd);
   return std::move(maker.graph);
-}
-
-std::string Grammar::paraphrase(const Meaning& meaning) const {
-  return paraphrase(meaning, Form::announced);
 }
 
 std::string Grammar::paraphrase(const Meaning& meaning, Form form) const {

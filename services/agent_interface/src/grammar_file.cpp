@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "saphira/agent_interface/grammar.hpp"
+#include "finder.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 #include "words.hpp"
@@ -31,6 +31,15 @@ class Grammar::Reader {
     }
     check_last();
     check_steps();
+    for (std::size_t i = 0; i < grammar_.rules_.size(); ++i)
+      for (std::size_t k = 0; k < grammar_.rules_[i].patterns.size(); ++k) {
+        Pattern& pattern = grammar_.rules_[i].patterns[k];
+        note_end(pattern.node, true, pattern.ends);
+        std::set<std::string> begins;
+        note_end(pattern.node, false, begins);
+        for (const std::string& word : begins)
+          grammar_.begun_by_[word].emplace_back(i, k);
+      }
     if (grammar_.keywords_.empty())
       fail("expected a line such as \"keyword: flakey\" in the file");
   }
@@ -231,13 +240,54 @@ class Grammar::Reader {
                         steps_[i].line);
   }
 
+  /// Adds the words that a part may begin or end with (`last`). False: it may have no words.
+  bool note_end(const Node& node, bool last, std::set<std::string>& ends) const {
+    const auto note_list = [&](const std::string& name) {
+      if (const auto list = grammar_.lists_.find(name); list != grammar_.lists_.end())
+        for (const Entry& one : list->second)
+          ends.insert(last ? one.words.back() : one.words.front());
+    };
+    switch (node.kind) {
+      case Node::Kind::word:
+        ends.insert(node.text);
+        return true;
+      case Node::Kind::number:
+        ends.insert(kAnyNumber);
+        note_list("digit");  // "nought point two"
+        note_list("number");
+        return true;
+      case Node::Kind::list:
+        note_list(node.text);
+        return true;
+      case Node::Kind::name:
+        ends.insert(kAnyName);
+        return true;
+      case Node::Kind::rest:
+        ends.insert(kAnyText);
+        return true;
+      case Node::Kind::sequence:
+        for (std::size_t i = 0; i < node.parts.size(); ++i)
+          if (note_end(node.parts[last ? node.parts.size() - 1 - i : i], last, ends))
+            return true;
+        return false;
+      case Node::Kind::optional:
+        note_end(node.parts.front(), last, ends);
+        return false;
+      case Node::Kind::choice:
+        return std::ranges::count_if(node.parts, [&](const Node& part) {
+                 return note_end(part, last, ends);
+               }) == std::ssize(node.parts);
+    }
+    return false;
+  }
+
   void pattern() {
     if (grammar_.rules_.empty())
       fail("expected a functor such as stop() before the words that mean it");
     Node node = parts('\0');
     if (at_ < line_.size())
       fail("expected the end of the line");
-    grammar_.rules_.back().patterns.push_back(std::move(node));
+    grammar_.rules_.back().patterns.push_back({std::move(node)});
   }
 
   /// a b | c d, up to the closing character.

@@ -211,6 +211,9 @@ std::string Dialogue::place(const std::string& name, const Situation& situation)
   const Advice* const thing = knowledge_.find(Advice::Kind::person_at, "the " + name);
   if (known.empty() && thing != nullptr)
     return place(lowered(thing->value), situation);
+  for (const std::string_view kind : {"room ", "office "})
+    if (known.empty() && name.starts_with(kind))
+      return place(name.substr(kind.size()), situation);
   const std::string number = room_number(name);
   if (!known.empty() || number.empty())
     return known;

@@ -1,6 +1,7 @@
 // The part of the dialogue for people's questions: about the robot, its reasons, and its knowledge.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -85,12 +86,28 @@ KnownGoal goal_of(const Task& task, const std::vector<KnownGoal>& goals) {
 }  // namespace
 
 std::string Dialogue::named_goal(const KnownGoal& goal, Grammar::Form form) const {
-  const Argument* const place = find(goal.arguments, "place");
+  constexpr std::array<std::pair<std::string_view, const char*>, 7> kOrders{
+      {{"go-to-place", "go_to"},
+       {"deliver", "deliver"},
+       {"tell", "tell"},
+       {"guide", "guide"},
+       {"find-person", "find"},
+       {"patrol", "patrol"},
+       {"explore", "explore"}}};
   std::string words;
-  if (goal.functor == "go-to-place" && place != nullptr)
-    words = grammar_.paraphrase({"go_to", {{"place", place->text}, {"owner", ""}}}, form);
-  if (const std::string arguments = describe(goal.arguments); words.empty())
+  for (const auto& [functor, order] : kOrders)
+    if (goal.functor == functor) {
+      Meaning meaning{order, {{"owner", ""}}};
+      for (const Argument& one : goal.arguments)
+        meaning.slots[one.name == "name" ? "person" : one.name] =
+            one.text.starts_with("the ") ? one.text.substr(4) : one.text;
+      words = grammar_.paraphrase(meaning, form);
+    }
+  // An argument that the words have a place for may be unknown.
+  if (words.empty() || words.find('$') != std::string::npos) {
+    const std::string arguments = describe(goal.arguments);
     words = goal.functor + (arguments.empty() ? "" : " " + arguments);
+  }
   return words;
 }
 
@@ -170,6 +187,70 @@ std::string Dialogue::why(const Situation& situation) const {
          " " + state_of(*goal);
 }
 
+std::string Dialogue::time_left(const Situation& situation) const {
+  constexpr double kCruise = 0.3;  // [m/s] of go-to-place, at most
+  constexpr double kGuided = 0.2;  // [m/s]
+  constexpr double kSlow = 0.15;   // [m/s]
+  std::string place;
+  double pace = kCruise;
+  for (const KnownGoal& goal : situation.goals) {
+    if (goal.state != v1::GOAL_UNDERWAY ||
+        (goal.functor != "go-to-place" && goal.functor != "guide"))
+      continue;
+    const Task* const own = tasks_.find(goal.tag);
+    const Arguments& arguments = own != nullptr ? own->goal.arguments : goal.arguments;
+    const Argument* const to = find(arguments, "place");
+    const Argument* const speed = find(arguments, "speed");
+    place = to != nullptr ? to->text : "";
+    pace = speed != nullptr ? speed->number : goal.functor == "guide" ? kGuided : kCruise;
+  }
+  if (place.empty())
+    return "I do not know: I am on no way to a place";
+  if (!situation.pose_in_map)
+    return kLost;
+  const maps::RouteResult way = allowed_way(place, situation);
+  if (!way.route || !(pace > 0.0))
+    return "I do not know: " + (way.reason.empty() ? "I see no way" : way.reason);
+  pace = situation.is_slow ? std::min(pace, kSlow) : pace;
+  const double seconds = way.route->length / pace;
+  constexpr double kMinute = 60.0;
+  return place + " is " + saphira::plain(std::round(way.route->length)) +
+         " m from here: at least " +
+         (seconds < 2.0 * kMinute ? saphira::plain(std::round(seconds)) + " s"
+                                  : saphira::plain(std::floor(seconds / kMinute)) + " minutes");
+}
+
+const Dialogue::Words* Dialogue::words_of_speaker(const std::string& name) const {
+  const auto found = std::ranges::find_if(
+      words_, [&](const Words& one) { return same_person(one.speaker, name); });
+  return found == words_.end() ? nullptr : &*found;
+}
+
+std::string Dialogue::sources(const Meaning& meaning, const Utterance& utterance,
+                              const Situation& situation) const {
+  const std::string about = slot(meaning, "about");
+  const Words* const newest = words_of_speaker(utterance.speaker);
+  const auto is_meant = [&](const Advice& one) {
+    if (!about.empty())
+      return one.about == about || one.about == "the " + about || one.value == about;
+    return newest != nullptr && (newest->answer.find(describe(one)) != std::string::npos ||
+                                 newest->answer.find(as_told(one)) != std::string::npos);
+  };
+  const std::string value = slot(meaning, "place");
+  bool told = value.empty();
+  std::string all;
+  for (const Advice& one : knowledge_.all())
+    if (is_meant(one)) {
+      all += (all.empty() ? "" : "; ") + source_of(one);
+      told = told || one.about == "the " + value || one.value == place(value, situation);
+    }
+  if (!told && !all.empty())
+    all = "that I do not know; " + all;
+  return !all.empty()    ? all
+         : about.empty() ? "tell me which fact: ask who told you about, and a name"
+                         : "nobody has told me anything about " + about;
+}
+
 bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utterance,
                                     const Situation& situation, Outputs& out) const {
   const std::string& functor = meaning.functor;
@@ -209,6 +290,20 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
     const std::string time = seconds > 0 ? local_text(seconds, "%H:%M") : "unknown to me";
     const bool clock = slot(meaning, "what") == "clock";
     say(utterance, grammar_.paraphrase(clock ? with(meaning, "time", time) : meaning), true, out);
+  } else if (functor == "how_long") {
+    say(utterance, time_left(situation), true, out);
+  } else if (functor == "told_by") {
+    say(utterance, sources(meaning, utterance, situation), true, out);
+  } else if (functor == "what_said") {
+    const std::string who = slot(meaning, "who");
+    const bool own = who == "me" || who == "robot";
+    const Words* const words = words_of_speaker(own ? utterance.speaker : who);
+    say(utterance,
+        words == nullptr ? (own ? "that was your first sentence to me since I began"
+                                : "I remember no sentence of " + who + " to me")
+        : who == "robot" ? "I said: " + words->answer
+                         : (own ? "you" : words->speaker) + " said: " + quoted(words->said),
+        true, out);
   } else if (functor == "what_do_you_carry") {
     std::string all;
     for (const auto& [object, to] : situation.carried)

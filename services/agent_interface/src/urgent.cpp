@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "saphira/agent_interface/grammar.hpp"
+#include "finder.hpp"
 #include "words.hpp"
 
 namespace saphira::agent_interface {
@@ -47,11 +47,12 @@ bool is_misspelled(const std::string& word, const std::string& right) {
 
 class Grammar::UrgentFinder {
  public:
-  UrgentFinder(const Grammar& grammar, std::string_view text) : grammar_(grammar) {
+  UrgentFinder(Finder& finder, const Grammar& grammar, std::string_view text)
+      : finder_(finder), grammar_(grammar) {
     for (const Rule& rule : grammar.rules_)
       if (rule.use == Use::alone)
-        for (const Node& pattern : rule.patterns)
-          note_words(pattern);
+        for (const Pattern& pattern : rule.patterns)
+          note_words(pattern.node);
     for (std::string& word : words_and_marks_of(text)) {
       if (word == kComma || word == kMark) {
         end_clause(word == kMark);
@@ -154,9 +155,9 @@ class Grammar::UrgentFinder {
           covered_[at].order = covered_[at + length].order;
       }
       for (const Rule& rule : grammar_.rules_)
-        for (const Node& pattern : rule.patterns)
+        for (const Pattern& pattern : rule.patterns)
           if (rule.use == Use::alone && covered_[at].order == nullptr)
-            for (const Match& match : grammar_.match(pattern, words_, {at}))
+            for (const Finder::Match& match : finder_.match(pattern.node, words_, {at}))
               if (match.end <= clause.to && match.end > at &&
                   (covered_[match.end].fillers || covered_[match.end].order != nullptr))
                 covered_[at].order = &rule.meaning;
@@ -173,7 +174,7 @@ class Grammar::UrgentFinder {
   }
 
   /// An order at the beginning or end of a clause of the robot.
-  std::optional<Meaning> within(const Clause& clause) const {
+  std::optional<Meaning> within(const Clause& clause) {
     const auto end = words_.begin() + static_cast<std::ptrdiff_t>(clause.to);
     bool begins = true;
     for (std::size_t at = clause.from; at < std::min(clause.to, limit_); ++at) {
@@ -183,7 +184,7 @@ class Grammar::UrgentFinder {
         continue;
       const std::vector<std::string> words(words_.begin() + static_cast<std::ptrdiff_t>(at), end);
       for (const Use use : {Use::urgent, Use::command})
-        for (const Meaning& one : grammar_.look(words, true, false, use))
+        for (const Meaning& one : finder_.look(words, true, false, use))
           if (use == Use::urgent || (clause.ends_sentence && is_order(one)))
             return one;
       begins = !fillers(at, clause.to).empty();
@@ -197,6 +198,7 @@ class Grammar::UrgentFinder {
     });
   }
 
+  Finder& finder_;
   const Grammar& grammar_;
   std::vector<std::string> known_;  ///< the words of urgent orders
   std::vector<std::string> words_;
@@ -208,7 +210,12 @@ class Grammar::UrgentFinder {
 };
 
 Grammar::Urgent Grammar::urgent(std::string_view text) const {
-  return UrgentFinder(*this, text).find();
+  Finder finder(*this);
+  return urgent(text, finder);
+}
+
+Grammar::Urgent Grammar::urgent(std::string_view text, Finder& finder) const {
+  return UrgentFinder(finder, *this, text).find();
 }
 
 }  // namespace saphira::agent_interface

@@ -395,6 +395,27 @@ TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
 }
 
 /// The words of a stop go to the bridge itself, whatever other programs do.
+TEST_F(DialogueOnTheBus, AGoalOfAnotherProgramIsNamedWhenItHasEnded) {
+  bus::Writer<v1::Goal> others = person.writer(bus::topics::kGoals);
+  const v1::Goal goal{.id = {person.instance(), 1},
+                      .requester = "bob",
+                      .functor = "go-to-place",
+                      .arguments = {bus::text("place", "EJ-231")}};
+  const auto become = [&](v1::GoalState state, const std::string& reason) {
+    statuses.write({.id = goal.id,
+                    .requester = goal.requester,
+                    .functor = goal.functor,
+                    .state = state,
+                    .reason = reason});
+    dialogue->step();
+  };
+  others.write(goal);
+  become(v1::GOAL_UNDERWAY, "");
+  others.dispose(goal);
+  become(v1::GOAL_FAILED, "no way");
+  EXPECT_EQ(say("Flakey, why?"), "the way to EJ-231 for bob failed: no way");
+}
+
 TEST_F(DialogueOnTheBus, AStopIsTheBridges) {
   bus::Node bridge{test::memory_options("bridge"), memory};
   auto stops = bridge.reader(bus::topics::kDriveStop);

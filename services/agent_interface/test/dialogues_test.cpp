@@ -206,6 +206,14 @@ class Conversation : public DialogueTest {
        }},
       {"goals are", [this](const auto& text) { know_goals(text); }},
       {"its step", [this](const auto& text) { situation.goals.back().step = text; }},
+      {"its arguments",
+       [this](const auto& text) {
+         std::istringstream in(text);
+         for (std::string name, value;
+              std::getline(std::getline(in >> std::ws, name, '='), value, '"') &&
+              std::getline(in, value, '"');)
+           situation.goals.back().arguments.push_back(saphira::text(name, value));
+       }},
       {"its note", [this](const auto& text) { situation.goals.back().note = text; }},
       {"its reason", [this](const auto& text) { situation.goals.back().reason = text; }},
       {"seconds on the way", [this](const auto& text) { ago_ = std::stod(text); }},
@@ -241,7 +249,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 107);
+  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 113);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "lines.hpp"
 #include "process.hpp"
@@ -295,6 +296,53 @@ TEST(Utterances, MeanWhatAPersonWouldTakeThemFor) {
   EXPECT_GE(phrases.size(), 250U);
   for (const SaidAndMeant& phrase : phrases)
     EXPECT_EQ(meaning_of(grammar, phrase), phrase.meaning) << phrase.text;
+}
+
+/// Sentences of people and their words, joined and repeated in any way. The work is counted, since
+/// it is the time.
+TEST(Utterances, TakeBoundedWork) {
+  const std::string file = test::source("config/grammars/flakey.grammar");
+  const Grammar grammar(read_file(file), file);
+  std::vector<std::string> parts;
+  std::vector<std::string> words;
+  for (const SaidAndMeant& one :
+       read_utterances(read_file(test::source("services/agent_interface/test/utterances.txt")))) {
+    if (one.meaning != "what?") {
+      EXPECT_LT(grammar.understand(one.text, one.reply).work, Grammar::kMostWork / 5) << one.text;
+    }
+    std::string part;
+    for (const std::string& word : words_of(one.text))
+      if (word != "flakey" && word != "robot") {
+        part += (part.empty() ? "" : " ") + word;
+        words.push_back(word);
+      }
+    if (!part.empty())
+      parts.push_back(part);
+  }
+  std::mt19937 random(1);
+  const auto any = [&](const std::vector<std::string>& some) {
+    return some[random() % some.size()];
+  };
+  const std::vector<std::string> joints{
+      " ", ", ", " and ", " then ", ", and after that ", " but ", " slowly ", " now ", " at five "};
+  for (int i = 0; i < 300; ++i) {
+    std::string text = any(parts);
+    std::string repeated;
+    const std::size_t length = 1 + random() % 4;
+    for (std::size_t k = 0; k < length; ++k)
+      repeated += any(joints) + (i % 3 == 0 ? any(parts) : any(words));
+    const std::size_t size = 1 + random() % 60;
+    while (words_of(text).size() < size)
+      text += i % 5 == 0 ? any(joints) + any(parts) : repeated;
+    if (i % 2 == 0)
+      text += any(joints) + any(parts);
+    text = "Flakey, " + text;
+    const Grammar::Understood understood = grammar.understand(text, i % 7 == 0);
+    EXPECT_LT(understood.work, 2 * Grammar::kMostWork) << text;
+    if (understood.work > Grammar::kMostWork) {
+      EXPECT_TRUE(understood.meanings.empty() || grammar.urgent(text).meaning) << text;
+    }
+  }
 }
 
 }  // namespace

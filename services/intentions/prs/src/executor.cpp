@@ -20,7 +20,10 @@ constexpr const char* kPositionLost =
     "the goal is cannot be told";
 
 std::string name_of_goal(const Goal& goal) {
-  std::string name = "goal " + describe(goal.id) + " (" + goal.functor + ")";
+  constexpr std::size_t kLongest = 100;  // letters
+  std::string name = goal.functor;
+  if (const std::string arguments = describe(goal.arguments); !arguments.empty())
+    name += " " + (arguments.size() > kLongest ? arguments.substr(0, kLongest) + "..." : arguments);
   if (!goal.requester.empty())
     name += " of " + quoted(goal.requester);
   return name;

@@ -186,6 +186,11 @@ class Dialogue {
     std::string person;
     std::string source;
   };
+  struct Words {  ///< the newest sentence of a speaker, and the robot's answer
+    std::string speaker;
+    std::string said;
+    std::string answer;
+  };
   struct Ended {       ///< the newest goal that has ended
     std::string task;  ///< in words
     bool success = false;
@@ -287,6 +292,13 @@ class Dialogue {
   std::string in_words(const Meaning& meaning) const;
   /// The known person of "karens office", written without apostrophe; empty: none.
   std::string owner_in(const std::string& name) const;
+  void note_words(const Utterance& utterance, const Outputs& out);
+  const Words* words_of_speaker(const std::string& name) const;
+  /// The sources of the facts in the newest answer to this speaker, or of those about somebody.
+  std::string sources(const Meaning& meaning, const Utterance& utterance,
+                      const Situation& situation) const;
+  /// The time that the rest of the way takes, by the map.
+  std::string time_left(const Situation& situation) const;
   /// The reason for which the robot stands or drives.
   std::string why(const Situation& situation) const;
   /// Asks which of several meanings a sentence has.
@@ -344,8 +356,9 @@ class Dialogue {
   };
 
   std::vector<Gone> gone_;
-  struct Pace {           ///< a slow one that no order of this dialogue has
-    std::string speaker;  ///< whose next order takes it
+  std::vector<Words> words_{};  ///< since the start
+  struct Pace {                 ///< a slow one that no order of this dialogue has
+    std::string speaker;        ///< whose next order takes it
     std::string source;
     bool for_others = false;  ///< it was said while the robot did something for another program
   };

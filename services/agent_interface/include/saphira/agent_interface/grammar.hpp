@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -65,7 +66,11 @@ class Grammar {
     std::vector<Meaning> bare{};  ///< replies that are a mere name, after the keyword
     /// Its meaning as a reply, where the sentence has another one by itself.
     std::optional<Meaning> answer{};
+    std::size_t work = 0;  ///< look-ups, and parts of patterns that were compared with words
   };
+  /// A sentence that needs more is not understood, but for its stop: a person may say "slowly"
+  /// twenty times.
+  static constexpr std::size_t kMostWork = 100'000;
   /// The meaning of a text. replies: also accepts rules without the keyword, since the robot has
   /// asked a question. With the keyword a reply counts only where no other rule matches.
   Understood understand(std::string_view text, bool replies = false) const;
@@ -81,12 +86,11 @@ class Grammar {
   /// the end of a sentence to the robot, or those of an `urgent` rule at the beginning of a clause.
   Urgent urgent(std::string_view text) const;
 
-  /// The meaning in words, for the robot to say before it acts; empty without one in the file.
-  std::string paraphrase(const Meaning& meaning) const;
-  /// The same in another form: what the robot is doing ("going to the library"), and what the task
-  /// is called ("the way to the library"). Empty without one in the file.
+  /// The meaning in words: for the robot to say before it acts, as what it is doing ("going to the
+  /// library"), or as the name of the task ("the way to the library"). Empty without one in the
+  /// file.
   enum class Form { announced, doing, task };
-  std::string paraphrase(const Meaning& meaning, Form form) const;
+  std::string paraphrase(const Meaning& meaning, Form form = Form::announced) const;
   const std::vector<std::string>& keywords() const { return keywords_; }
   /// Words that may be the name of a person, place or thing. In writing, `{slot}` takes any other
   /// name, too.
@@ -121,47 +125,26 @@ class Grammar {
     urgent,  ///< where no other rule matches; more words may follow
     alone    ///< an urgent order by itself: see urgent()
   };
+  struct Pattern {
+    Node node;
+    /// Words that it may end with, and signs for names, numbers and texts: finder.hpp.
+    std::set<std::string> ends{};
+  };
   struct Rule {
     Meaning meaning;  ///< slots with their default values
     Use use = Use::command;
     std::vector<std::string> paraphrases;  ///< in the order of Form
-    std::vector<Node> patterns{};
+    std::vector<Pattern> patterns{};
   };
-  struct Match {
-    std::size_t end = 0;
-    std::size_t literal = 0;  ///< words of the pattern itself
-    std::map<std::string, std::string> slots{};
-  };
+  class Finder;
   class Reader;
   class GraphMaker;
   class UrgentFinder;
 
+  Understood understand(std::string_view text, bool replies, const Urgent& urgent,
+                        Finder& finder) const;
+  Urgent urgent(std::string_view text, Finder& finder) const;
   bool make_plain_order(std::vector<std::string>& words) const;
-  std::vector<Match> match(const Node& node, const std::vector<std::string>& words,
-                           const Match& from) const;
-  std::vector<Match> sequence(const std::vector<Node>& parts, const std::vector<std::string>& words,
-                              const Match& from) const;
-  std::vector<Match> name(const Node& node, const std::vector<std::string>& words,
-                          const Match& from) const;
-  std::vector<Match> entry(const Node& node, const std::vector<std::string>& words,
-                           const Match& from) const;
-  std::optional<std::pair<std::size_t, std::string>> decimal(const std::vector<std::string>& words,
-                                                             std::size_t at) const;
-  /// The meanings by the rules for that use; `command`: also the typed ones.
-  std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
-                            Use use) const;
-  /// The ways to divide words and commas into sentences with one meaning each, all of them steps.
-  /// `before`: the words of the step before them. runs_on: also where no word joins two sentences.
-  std::vector<std::vector<Meaning>> divided(const std::vector<std::string>& words,
-                                            const std::vector<std::string>& before,
-                                            bool runs_on) const;
-  /// One step, or the same several times; empty: it is none. sentence: as it was looked for.
-  std::vector<Meaning> steps_in(std::vector<std::string>& sentence,
-                                const std::vector<std::string>& before) const;
-  /// A meaning of that kind before or behind other words, and these. A rule may also be within
-  /// them.
-  std::vector<std::pair<Meaning, std::vector<std::string>>> asides(
-      const std::vector<std::string>& words, Use use) const;
   std::size_t joint(const std::vector<std::string>& words, std::size_t at) const;
   bool is_step(const Meaning& meaning) const;
   std::vector<std::string> completed(const std::vector<std::string>& before,
@@ -184,6 +167,9 @@ class Grammar {
   std::vector<std::vector<std::string>> polite_;  ///< words before an order, as "can you"
   std::map<std::string, std::vector<Entry>> lists_;
   std::vector<Rule> rules_;
+  using Place = std::pair<std::size_t, std::size_t>;  ///< of a rule, and of a pattern in it
+  /// The patterns that may begin with a word, or with what a sign is for.
+  std::map<std::string, std::vector<Place>> begun_by_;
 };
 
 }  // namespace saphira::agent_interface
