@@ -84,7 +84,7 @@ class Registration::Self {
   void restore(const Memory& memory, const std::optional<Pose>& start);
   const std::set<std::uint32_t>& closed_doors() const { return now_.presence.closed(); }
   void recall_closed(std::set<std::uint32_t> doors) {
-    now_.presence.recall(std::move(doors));
+    now_.sure_closed = std::move(doors);
     forget_looks();
   }
 
@@ -100,7 +100,9 @@ class Registration::Self {
   void follow(const ParticleCloud::Estimate& cloud, double score);
   void look_elsewhere(const std::vector<PlacedReading>& readings,
                       const std::vector<const Percept*>& percepts);
+  bool is_near(const Pose& pose) const;
   void forget_looks();
+  void note_openings(int before);
   void look_for_news(const Inputs& inputs, const std::vector<PlacedReading>& readings);
   bool uses_old_readings(const Percept& percept) const;
   double turned_since(const Percept& percept) const;
@@ -122,14 +124,17 @@ class Registration::Self {
   Search search_;  // works on now_.search
 };
 
-/// Discards evidence that was gathered at a wrong pose, or with a wrong map.
+/// Discards evidence that was gathered at a wrong pose, or with a wrong map: doors are closed or
+/// open as they were when the pose was last sure.
 void Registration::Self::forget_looks() {
-  now_.presence.recall(now_.presence.closed());
+  now_.presence.recall(now_.sure_closed);
   now_.objects = ObjectFinder(settings_.objects);
 }
 
 void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
                                double drift_variance, double confidence) {
+  if (is_near(pose))  // what was heard counts
+    now_.sure_closed = now_.presence.closed();
   now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
   search_.set_own_score(settings_.lost + confidence * (settings_.sure - settings_.lost));
@@ -141,6 +146,11 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   now_.leads = false;
   now_.standing.forget();
   forget_looks();
+}
+
+bool Registration::Self::is_near(const Pose& pose) const {
+  return now_.filter && (pose.position() - now_.filter->pose().position()).norm() < kNear &&
+         std::abs(norm2_angle(pose.th - now_.filter->pose().th)) < kNearTurn;
 }
 
 /// The robot may have been carried: discard all earlier readings.
@@ -163,9 +173,7 @@ void Registration::Self::doubt() {
     return;
   now_.filter->widen(0.3, radians(10.0));
   now_.confirmed = false;
-  const Pose& pose = now_.filter->pose();
-  const bool at_start = now_.start && (now_.start->position() - pose.position()).norm() < kNear &&
-                        std::abs(norm2_angle(now_.start->th - pose.th)) < kNearTurn;
+  const bool at_start = now_.start && is_near(*now_.start);
   if (at_start && now_.state == v1::REGISTRATION_TRACKING)
     return;
   now_.state = v1::REGISTRATION_LOST;
@@ -476,10 +484,11 @@ bool Registration::Self::dense(const ParticleCloud::Estimate& cloud) const {
 
 /// Dead reckoning is worse than the filter may assume: for some way the cloud leads.
 void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double score) {
-  if ((cloud.pose.position() - now_.filter->pose().position()).norm() > kNear ||
-      std::abs(norm2_angle(cloud.pose.th - now_.filter->pose().th)) > kNearTurn)
+  if (!is_near(cloud.pose)) {
     now_.state =
         v1::REGISTRATION_LOST;  // reported, so that users of the pose learn that it did not hold
+    forget_looks();
+  }
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   search_.set_own_score(score);
@@ -519,10 +528,7 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
   if (!best)
     return;
   const Pose there = best->hypothesis->filter.pose();
-  const bool near = now_.filter &&
-                    (there.position() - now_.filter->pose().position()).norm() < kNear &&
-                    std::abs(norm2_angle(there.th - now_.filter->pose().th)) < kNearTurn;
-  if (now_.state == v1::REGISTRATION_TRACKING && !near) {
+  if (now_.state == v1::REGISTRATION_TRACKING && !is_near(there)) {
     // Reported before the correction, so that users of the pose learn that it did not hold.
     if (best->likely)
       now_.state = v1::REGISTRATION_LOST;
@@ -563,6 +569,15 @@ void Registration::Self::look_for_news(const Inputs& inputs,
     now_.output.objects = now_.objects.step(map_, field_, now_.cycle, looks);
 }
 
+/// Other corridors have the same walls, and now and then an opening at the same place. As many as
+/// the search needs for a place, one after the other, make the evidence of closed doors count.
+void Registration::Self::note_openings(int before) {
+  if (now_.search.openings > 0.0)
+    now_.agreed = 0;
+  else if (now_.search.own_openings > before && ++now_.agreed >= settings_.search.matches)
+    now_.sure_closed = now_.presence.closed();
+}
+
 bool Registration::Self::holds_again() const {
   if (now_.doubted)
     return search_.own_leads();
@@ -581,7 +596,9 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     correct(percepts);
     correct(readings);
     look_around(readings);
+    const int openings = now_.search.own_openings;
     look_elsewhere(readings, percepts);
+    note_openings(openings);
     if (now_.standing.step(now_.moved, readings))
       suspect_it_was_carried();
     if (now_.state == v1::REGISTRATION_TRACKING &&

@@ -250,6 +250,31 @@ TEST(Registration, ARunOfClosedDoorsMakesItUnsure) {
   EXPECT_GE(registration.output().confidence, 0.9);
 }
 
+/// A robot that was carried along a corridor hears wall where its map has doors. Where it really is
+/// those doors are as they were.
+TEST(Registration, DoorsThatSeemedClosedFromAWrongPlaceAreAsBefore) {
+  const maps::Map map = maps::parse_map(
+      "CORRIDOR (1) 15000, 0, 0, 30000, 2000\n"
+      "DOOR (2) 8000, 1000, -90, 900\n"
+      "DOOR (3) 12000, 1000, -90, 900\n",
+      "test");
+  const Pose start{2.0, 0.0, 0.0};
+  Registration registration(settings(), map, start);
+  registration.set_pose(start, {0.05, radians(1.0)});
+  registration.recall_closed({3});
+  Straight robot(registration, start);
+  robot.to(11.0);
+  EXPECT_EQ(registration.closed_doors(), (std::set<std::uint32_t>{2, 3}));
+  registration.set_pose({16.0, 0.0, 0.0});
+  EXPECT_EQ(registration.closed_doors(), std::set<std::uint32_t>{3});
+  Registration same(settings(), map, start);
+  Straight other(same, start);
+  same.set_pose(start, {0.05, radians(1.0)});
+  other.to(11.0);
+  same.set_pose({11.3, 0.0, 0.0});
+  EXPECT_EQ(same.closed_doors(), std::set<std::uint32_t>{2}) << "its place was right";
+}
+
 /// Walls bring the state back after some metres, but only a door of the map makes it sure again.
 TEST(Registration, WhoWasCarriedIsSureAgainByAnOpening) {
   const Pose start{4.0, 0.0, 0.0};

@@ -20,6 +20,7 @@ constexpr double kStep = 0.8;
 // Older readings [cycles] are from another place.
 constexpr std::uint64_t kFresh = 10;
 constexpr double kStraight = radians(10.0);  // of a sonar that looks ahead
+constexpr double kThere = 1.5;               // [m] the robot has come back to the start
 constexpr double kAtEdge = 0.35;             // [m] from a corner of the way over the free floor
 // [m/m2] Longer on the same floor, the robot's drift costs more than what it still sees is worth.
 constexpr double kWayOverFloor = 0.8;
@@ -238,7 +239,7 @@ void Explorer::choose(const Inputs& inputs) {
     std::size_t i = 0;
     for (double gone = 0.0; i + 1 < inputs.way.size() && gone < settings_.home; ++i)
       gone += (inputs.way[i + 1] - inputs.way[i]).norm();
-    Lead home{inputs.way[i], start_in_map_.th, "the start", true, false};
+    Lead home{inputs.way[i], start_in_map_.th, "the way back to the start", true, false};
     if (!home_)
       open.push_back(home);
     home_ = true;
@@ -300,6 +301,8 @@ void Explorer::go(const Inputs& inputs) {
   }
   if (path_.size() <= 1 && (path_.empty() || (path_.front() - here).norm() < 0.6)) {
     if (lead_->home) {
+      if ((lead_->point - here).norm() > kThere)
+        leave(*lead_, "closed");
       finish(inputs);
       return;
     }
@@ -508,7 +511,7 @@ void Explorer::leave(const Lead& lead, const std::string& why) {
 std::vector<std::string> Explorer::left(const maps::Map& map) const {
   std::vector<std::string> out;
   for (const Lead& lead : left_)
-    if (!lead.home && !lead.door && !mapped_along(map, lead.point, lead.heading) &&
+    if (!lead.door && (lead.home || !mapped_along(map, lead.point, lead.heading)) &&
         std::find(out.begin(), out.end(), lead.what) == out.end())
       out.push_back(lead.what);
   return out;

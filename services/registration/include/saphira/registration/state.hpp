@@ -44,7 +44,7 @@ struct RegistrationState {
         "done", done)("used", used)("since_readings", since_readings)("trial", trial)(
         "weighed", weighed)("lead", lead)("cloud_score", cloud_score)("leads", leads)("led", led)(
         "cloud", cloud)("search", search)("standing", standing)("presence", presence)(
-        "objects", objects)("output", output);
+        "sure_closed", sure_closed)("agreed", agreed)("objects", objects)("output", output);
   }
 
   bool on = true;
@@ -89,6 +89,8 @@ struct RegistrationState {
   SearchState search;
   Standing standing;
   Presence presence;
+  std::set<std::uint32_t> sure_closed;  ///< doors that were closed when the pose was last sure
+  int agreed = 0;  ///< openings of the map seen since one was not where the map has it
   ObjectFinder objects;
   Output output;  ///< of the newest step
 };

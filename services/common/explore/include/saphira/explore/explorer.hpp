@@ -70,7 +70,8 @@ class Explorer {
 
   const Output& step(const Inputs& inputs);
   const Output& output() const { return output_; }
-  /// Ways that were found and could not be followed, and are not on the map: each with the reason.
+  /// Ways that were found and could not be followed, and are not on the map, and the way back to
+  /// the start if the robot did not come there: each with the reason.
   std::vector<std::string> left(const maps::Map& map) const;
   /// True where hardly a corridor was found: then the free floor is explored as well.
   bool in_room() const { return in_room_; }
