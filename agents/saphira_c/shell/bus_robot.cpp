@@ -488,7 +488,7 @@ class BusRobot final : public Robot {
     if (!grant)
       return;
     take_stop(ends, *grant);
-    // Who asked to drive under an emergency stop has to let go once after its reset.
+    // A driver that asked under an emergency stop has to let go once after its reset.
     if (std::exchange(estopped_, grant->estopped) && !grant->estopped)
       write(ends.node, ends, {.stamp = stamp_});
     std::string news;

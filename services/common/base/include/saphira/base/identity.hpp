@@ -44,8 +44,8 @@ inline bool may_be_of_a_kind(const Checked& self, const Identity* other) {
                               (self->role == "robot" || other->role == "robot"))));
 }
 
-/// True where `who` may change, replace or end what `owner` has asked for: the owner, operators, and
-/// the door at which the owner is a person. A stop is anybody's, and no matter of this.
+/// True where `who` may change, replace or end what `owner` has asked for: the owner, operators,
+/// and the door at which the owner is a person. A stop is anybody's, and no matter of this.
 inline bool may_end(const Checked& who, const Checked& owner) {
   return !who || !owner || who->role == "operator" ||
          (!who->name.empty() &&
