@@ -180,31 +180,5 @@ TEST(Building, WingsThatStandAslantAreFollowedToTheirEnds) {
   EXPECT_EQ(building.whole.drive().contacts(), 0);
 }
 
-// Somebody turns the robot by 90 degrees on its way: by its map it drives through a wall.
-TEST(Building, EndsWhereSomebodyHasMovedTheRobot) {
-  DriveOptions options;
-  options.made_world =
-      std::make_shared<sim::World>(sim::parse_world(make_floor(9002).world, "floor.wld"));
-  options.seed = 9002;
-  Building building(options);
-  Vec2 before = building.whole.truth().position();
-  double way = 0.0;
-  bool moved = false;
-  building.run(15000, [&] {
-    way += (building.whole.truth().position() - before).norm();
-    if (!moved && way >= 10.0)
-      moved = building.whole.drive().robot().place(
-          compose(building.whole.truth(), {0.0, 0.0, kPi / 2}));
-    before = building.whole.truth().position();
-  });
-  EXPECT_TRUE(moved);
-  EXPECT_FALSE(building.done());
-  EXPECT_EQ(
-      building.reason(),
-      "registration has ended the map: the robot seems to have been moved: by the map, it has "
-      "driven through a wall");
-  EXPECT_FALSE(building.whole.registered().adds_features);
-}
-
 }  // namespace
 }  // namespace saphira::test
