@@ -79,8 +79,6 @@ class Robot {
     ++frame_;
     odom_ = {};
   }
-  /// Somebody puts it where walls are all around.
-  void carry() { carried_ = true; }
   const Pose& truth() const { return truth_; }
   std::uint64_t frame() const { return frame_; }
   const Pose& pose_in_odom() const { return odom_; }
@@ -92,8 +90,6 @@ class Robot {
     reading.sonar = sonar;
     reading.echo = std::abs(across) > 0.95;
     reading.range = reading.echo ? random_.normal(1.0, 0.01) / std::abs(across) : 5.0;
-    if (carried_)
-      reading = {sonar, 1.5, true};
     return reading;
   }
   lps::Percept wall(double side) {
@@ -116,7 +112,6 @@ class Robot {
   std::uint64_t cycle_ = 0;
   std::uint64_t frame_ = 1;
   std::uint32_t last_id_ = 0;
-  bool carried_ = false;
   Pose truth_{3.5, 0.0, 0.0};
   Pose odom_;
 };
@@ -450,28 +445,6 @@ TEST(RegistrationCore, BuildingThatNobodyAsksForAgainEnds) {
   EXPECT_FALSE(core.adds_features());
   EXPECT_EQ(robot.step(core).reason.find("builds"), std::string::npos);
   EXPECT_FALSE(maps::named(core.map(), lps::PointType::position, "start").empty());
-}
-
-TEST(RegistrationCore, AMapThatIsBuiltEndsWhereTheRobotWasCarried) {
-  Core core(settings(""));
-  Robot robot;
-  for (int i = 0; i < 200; ++i)
-    robot.step(core);
-  for (int i = 0; i < 10; ++i)
-    EXPECT_EQ(robot.stand(core).reason, "builds the map");
-  const std::size_t before = core.map().features.size();
-  robot.carry();
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_TRUE(core.adds_features());
-    robot.stand(core);
-  }
-  EXPECT_FALSE(core.adds_features());
-  const Core::Outputs outputs = robot.step(core);
-  EXPECT_EQ(outputs.state, v1::REGISTRATION_UNPLACED);
-  EXPECT_TRUE(outputs.reason.starts_with(
-      "the robot seems to have been moved: all around has changed while it stood; "))
-      << outputs.reason;
-  EXPECT_EQ(core.map().features.size(), before + 1) << "the place of its start";
 }
 
 }  // namespace
