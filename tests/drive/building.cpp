@@ -39,6 +39,7 @@ void Building::note() {
   if (builder == nullptr)
     return;
   worst = std::max(worst, (whole.truth().position() - whole.believed().position()).norm());
+  closures = builder->closures();
   if (whole.cycle() % kLook != 0)
     return;
   way_ = {};

@@ -29,6 +29,7 @@ class Building {
 
   Whole whole;
   double worst = 0.0;  ///< [m] the estimated pose against the true one
+  int closures = 0;    ///< loops that were closed
 
  private:
   void note();

@@ -232,7 +232,6 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
   if (registration.stamp.cycle + kRegistrationLease < cycle)
     return result;
   result.state = registration.state;
-  result.reason = registration.reason;
   result.pose_in_map = lps::from_bus(registration.pose_in_map);
   result.confidence = registration.confidence;
   result.environment = registration.environment;

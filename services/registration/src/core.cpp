@@ -233,11 +233,6 @@ void Core::end_building() {
                      .learned = true});
   }
   registration_->set_map(now_.editor.map());
-  if (!now_.builder->moved().empty()) {
-    registration_->recall_closed({});
-    registration_->forget_pose();
-    return;
-  }
   registration_->set_pose(now_.builder->pose_in_map());
   const std::vector<std::uint32_t> closed = now_.builder->closed();
   registration_->recall_closed({closed.begin(), closed.end()});
@@ -256,15 +251,6 @@ Core::Outputs Core::step(const Inputs& inputs) {
   now_.odom = inputs.odom;
   now_.pose_in_odom = inputs.pose_in_odom;
   Outputs outputs = now_.building ? built(inputs) : registered(inputs);
-  if (now_.building && !now_.builder->moved().empty()) {
-    now_.moved = "the robot seems to have been moved: " + now_.builder->moved();
-    outputs.notes.warn("the map ends: " + now_.moved);
-    now_.adds_features = false;
-    now_.lease = 0;
-    set_builder();
-    outputs.state = registration_->output().state;
-    outputs.reason = now_.moved;
-  }
   now_.pose_in_map = outputs.pose_in_map;
   if (!environment_.works())
     outputs.environment = 0;
@@ -285,10 +271,6 @@ Core::Outputs Core::registered(const Inputs& inputs) {
   Outputs outputs;
   outputs.state = output.state;
   outputs.reason = output.reason;
-  if (output.state != v1::REGISTRATION_UNPLACED)
-    now_.moved.clear();
-  else if (!now_.moved.empty())
-    outputs.reason = now_.moved + "; " + outputs.reason;
   if (output.state != now_.told)
     outputs.notes.info(std::string(word(output.state)) +
                        (outputs.reason.empty() ? "" : ": " + outputs.reason));
@@ -515,7 +497,6 @@ void Core::begin_anew(const std::string& source) {
   now_.source = source;
   now_.changed = false;
   now_.start.reset();
-  now_.moved.clear();
   if (registration_) {
     registration_->recall_closed({});
     registration_->doubt_the_map();

@@ -36,12 +36,6 @@ constexpr double kHeard = 3.5;
 constexpr double kFacing = radians(12.0);
 constexpr double kHeardOff = 0.3;
 constexpr double kHeardSigma = 0.08;
-// Of a wall that the robot has driven through: the nodes of the way before and after, their least
-// distance from it, and the least distance of the place from the wall's ends, or from an opening
-// [m].
-constexpr std::size_t kThrough = 2;
-constexpr double kBehind = 0.3;
-constexpr double kWithin = 0.5;
 constexpr double kAnyHeading = 0.3;  // [rad] of the start, where the grid defines it
 
 double off_grid(double heading) {
@@ -71,8 +65,6 @@ void MapBuilder::snap(bool on) {
 }
 
 bool MapBuilder::step(const MapBuilderInputs& inputs) {
-  if (carried_while_it_stood(inputs))
-    moved_ = "all around has changed while it stood";
   drive(inputs);
   for (const lps::Percept& percept : inputs.percepts)
     if (percept.confidence >= settings_.least_confidence)
@@ -86,12 +78,6 @@ bool MapBuilder::step(const MapBuilderInputs& inputs) {
   if (!news_ || way_ - settled_way_ < kSettle)
     return false;
   settle();
-  if (!believed_ && moved_.empty())
-    if (const auto node = last_node_before_a_crossing()) {
-      moved_ = "by the map, it has driven through a wall";
-      forget_since(*node);
-      settle();
-    }
   return publish();
 }
 
@@ -262,6 +248,7 @@ bool MapBuilder::take_line(const lps::Percept& percept, std::uint64_t cycle) {
     Taken& taken = known->second;
     GraphLine& line = graph_.lines[taken.index];
     taken.cycle = cycle;
+    known_lines_[taken.index].last_way = way_;
     // The aperture moves on with the robot: after a while the same wall is seen from another place.
     if (way_ - taken.way < settings_.again_way) {
       line.seen[taken.seen] = seen;
@@ -273,14 +260,18 @@ bool MapBuilder::take_line(const lps::Percept& percept, std::uint64_t cycle) {
     return true;
   }
   auto index = match_line(seen);
+  if (index && way_ - known_lines_[*index].last_way > settings_.closure_way)
+    ++closures_;
   if (!index) {
     const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
     index = graph_.lines.size();
     graph_.lines.push_back({wall.position(), wall.th, 0.0, {}, false});
+    known_lines_.emplace_back();
   }
   GraphLine& line = graph_.lines[*index];
   taken_[percept.id] = {true, *index, line.seen.size(), way_, cycle};
   line.seen.push_back(seen);
+  known_lines_[*index].last_way = way_;
   return true;
 }
 
@@ -290,6 +281,7 @@ bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) 
   if (known != taken_.end()) {
     Taken& taken = known->second;
     taken.cycle = cycle;
+    known_points_[taken.index].last_way = way_;
     known_points_[taken.index].found = true;
     known_points_[taken.index].only_driven = false;
     graph_.points[taken.index].seen[taken.seen] = seen;
@@ -299,6 +291,8 @@ bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) 
   if (match.is_ambiguous)
     return false;  // the pose may improve in a while
   auto index = match.index;
+  if (index && way_ - known_points_[*index].last_way > settings_.closure_way)
+    ++closures_;
   if (!index) {
     const Pose opening = compose(graph_.nodes[seen.node].in_map, seen.in_node);
     index = graph_.points.size();
@@ -308,6 +302,7 @@ bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) 
   GraphPoint& point = graph_.points[*index];
   taken_[percept.id] = {false, *index, point.seen.size(), way_, cycle};
   point.seen.push_back(seen);
+  known_points_[*index].last_way = way_;
   known_points_[*index].found = true;
   return true;
 }
@@ -410,84 +405,6 @@ void MapBuilder::pass() {
   }
 }
 
-bool MapBuilder::carried_while_it_stood(const MapBuilderInputs& inputs) {
-  if (inputs.pose_in_map || inputs.odom != odom_) {
-    standing_.forget();
-    return false;
-  }
-  std::vector<PlacedReading> placed;
-  for (const lps::SonarReading& reading : inputs.readings)
-    for (const lps::SonarMount& mount : settings_.sonars)
-      if (mount.sonar == reading.sonar)
-        placed.push_back({compose(inputs.pose_in_odom, mount.in_robot), reading.range, reading.echo,
-                          reading.sonar});
-  return standing_.step(relative(pose_in_odom_, inputs.pose_in_odom), placed);
-}
-
-/// A door that was closed was wall.
-bool MapBuilder::is_in_a_door(const Vec2& at) const {
-  for (std::size_t i = 0; i < graph_.points.size(); ++i) {
-    const GraphPoint& point = graph_.points[i];
-    if (!point.seen.empty() && known_points_[i].type == PointType::door &&
-        (point.in_map - at).norm() < kWithin + point.seen.front().width / 2)
-      return true;
-  }
-  return false;
-}
-
-/// The way and the walls contradict each other where one crosses the other: the robot was moved
-/// after it had been at the first of the two, and before it was at the second. The latest first one
-/// of all. Nothing: none crosses another.
-std::optional<std::size_t> MapBuilder::last_node_before_a_crossing() const {
-  std::optional<std::size_t> last;
-  for (const GraphLine& line : graph_.lines) {
-    const Stretches parts = stretches(line);
-    const auto off = [&](const GraphNode& node) {
-      return line.normal().dot(node.in_map.position() - line.anchor) - line.offset;
-    };
-    for (std::size_t i = kThrough; i + kThrough < graph_.nodes.size(); ++i) {
-      const std::size_t begin = i - kThrough;
-      const GraphNode& before = graph_.nodes[begin];
-      const GraphNode& after = graph_.nodes[i + kThrough];
-      const bool broken =
-          std::any_of(&before + 1, &after + 1, [](const auto& n) { return n.broken; });
-      if (broken || off(before) * off(after) >= 0.0 ||
-          std::min(std::abs(off(before)), std::abs(off(after))) < kBehind)
-        continue;
-      const double part = off(before) / (off(before) - off(after));
-      const Vec2 at =
-          before.in_map.position() + part * (after.in_map.position() - before.in_map.position());
-      const double along = line.along().dot(at - line.anchor);
-      const bool within = std::any_of(parts.begin(), parts.end(), [&](const auto& s) {
-        return along > s.first + kWithin && along < s.second - kWithin;
-      });
-      if (!within || is_in_a_door(at))
-        continue;
-      for (const SeenLine& seen : line.seen) {
-        const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
-        if (std::abs(to_frame(wall, at).x()) < seen.length / 2)
-          last = std::max(last.value_or(0), std::min(begin, seen.node));
-      }
-    }
-  }
-  return last;
-}
-
-/// All that was seen after that place on the way may be of another place.
-void MapBuilder::forget_since(std::size_t node) {
-  const auto later = [node](const auto& seen) { return seen.node > node; };
-  graph_.nodes.resize(node + 1);
-  for (GraphLine& line : graph_.lines)
-    std::erase_if(line.seen, later);
-  for (GraphPoint& point : graph_.points)
-    std::erase_if(point.seen, later);
-  std::erase_if(ahead_, later);
-  std::erase_if(driven_through_, [node](std::size_t i) { return i > node; });
-  for (Known& known : known_points_)
-    known.passes = {};
-  taken_.clear();
-}
-
 std::vector<std::uint32_t> MapBuilder::closed() const {
   std::vector<std::uint32_t> out;
   for (const auto& [id, point] : door_of_)
@@ -565,6 +482,7 @@ void MapBuilder::merge_lines() {
       const std::size_t moved = first.seen.size();
       first.seen.insert(first.seen.end(), second.seen.begin(), second.seen.end());
       second.seen.clear();
+      known_lines_[a].last_way = std::max(known_lines_[a].last_way, known_lines_[b].last_way);
       for (auto& [id, taken] : taken_)
         if (taken.is_line && taken.index == b) {
           taken.index = a;

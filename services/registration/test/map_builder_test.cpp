@@ -193,30 +193,6 @@ TEST(MapBuilder, ADoorThatIsClosedLaterIsMarkedAndStays) {
   EXPECT_TRUE(d.builder.closed().empty()) << "open again";
 }
 
-/// Somebody puts it down in another corridor: by its map it drives through the wall of the first.
-TEST(MapBuilder, WhoIsMovedNoticesTheWallThatItDrivesThrough) {
-  Driven d;
-  d.walls = {{{0.0, 1.0}, {8.0, 1.0}},
-             {{0.0, -1.0}, {8.0, -1.0}},
-             {{48.0, 1.0}, {60.0, 1.0}},
-             {{48.0, -1.0}, {60.0, -1.0}}};
-  d.drive(8.0);
-  d.turn(kPi);
-  d.drive(3.0);
-  EXPECT_EQ(d.builder.moved(), "");
-  const maps::Map before = d.builder.map();
-  d.pose = {50.0, 0.0, kPi / 2};
-  d.turn(-kPi / 2);
-  EXPECT_EQ(d.builder.moved(), "");
-  d.drive(4.0);
-  EXPECT_EQ(d.builder.moved(), "by the map, it has driven through a wall");
-  ASSERT_EQ(d.builder.map().features.size(), before.features.size())
-      << maps::to_text(d.builder.map());
-  const maps::Feature corridor = of_type(d.builder.map(), PointType::corridor).at(0);
-  EXPECT_NEAR(corridor.length, 8.0, 0.3);
-  EXPECT_NEAR(corridor.pose_in_map.y, 0.0, 0.02);
-}
-
 TEST(MapBuilder, OnAKnownMapOnlyWhatIsNewIsAdded) {
   const maps::Map known = maps::parse_map(
       "CORRIDOR (1) 6000, 0, 0, 12000, 2000\nDOOR (2) 4450, 1000, -90, 900 \"EJ-231\"\n", "known");

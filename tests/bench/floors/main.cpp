@@ -38,7 +38,6 @@ struct Options {
   bool only_carried = false;
   bool only_drives = false;
   bool only_building = false;
-  bool only_moved = false;
   bool shipped = false;
   bool json = false;
 };
@@ -305,61 +304,6 @@ nlohmann::json build(const Options& options, const Site& site, Tally& result) {
           {"contacts", building.whole.drive().contacts()}};
 }
 
-/// Builds the map of a floor. After some way somebody puts the robot down elsewhere.
-void move_once(const Options& options, const Site& site, double after,
-               const std::function<Pose(const Pose&)>& there, const std::string& name,
-               Tally& result) {
-  test::Building building(drive_of(options, site));
-  test::Whole& whole = building.whole;
-  double way = 0.0;
-  bool moved = false;
-  Vec2 before = whole.truth().position();
-  building.run(static_cast<std::uint64_t>(options.building * 600.0), [&] {
-    way += (whole.truth().position() - before).norm();
-    if (!moved && way >= after) {
-      moved = whole.drive().robot().place(there(whole.truth()));
-      way = moved ? 0.0 : way - 1.0;
-    }
-    before = whole.truth().position();
-  });
-  if (!moved)
-    return;
-  const bool noticed = building.reason().find("been moved") != std::string::npos;
-  ++result["moved"];
-  result["moved_noticed"] += noticed ? 1 : 0;
-  result["moved_unnoticed_ends"] += building.done() ? 1 : 0;
-  if (noticed)
-    result.values["moved_way"].push_back(way);
-  std::fprintf(stderr, "%llu %s after %.0f m: %s after %.1f m: %s\n",
-               static_cast<unsigned long long>(site.seed), name.c_str(), after,
-               noticed ? "noticed" : "not noticed", way, building.reason().c_str());
-}
-
-/// Put down in other corridors and a room, on its way, and turned, while it builds the map.
-void move_while_building(const Options& options, const Site& site, Tally& result) {
-  std::vector<Pose> others;
-  for (const maps::Feature& feature : site.map->features)
-    if (feature.type == lps::PointType::corridor)
-      others.push_back(feature.pose_in_map);
-  others.resize(std::min<std::size_t>(others.size(), 3));
-  for (const maps::Feature& feature : site.map->features)
-    if (feature.type == lps::PointType::office && others.size() < 4)
-      others.push_back(feature.pose_in_map);
-  for (const double after : {10.0, 40.0}) {
-    for (std::size_t i = 1; i < others.size(); ++i)
-      move_once(
-          options, site, after, [&](const Pose&) { return others[i]; },
-          "to place " + std::to_string(i), result);
-    for (const Pose& by : {Pose{-5.0, 0.0, 0.0}, Pose{2.0, 0.0, 0.0}, Pose{0.0, 0.0, radians(30.0)},
-                           Pose{0.0, 0.0, kPi / 2}, Pose{0.0, 0.0, kPi}})
-      move_once(
-          options, site, after, [&](const Pose& at) { return compose(at, by); },
-          by.th == 0.0 ? "ahead by " + std::to_string(std::lround(by.x)) + " m"
-                       : "turned by " + std::to_string(std::lround(degrees(by.th))) + " degrees",
-          result);
-  }
-}
-
 /// The figures of a floor, and of all.
 nlohmann::json figures_of(const Tally& all) {
   return {{"p95_m", all.quantile("off", 0.95)},
@@ -399,11 +343,6 @@ int run(const Options& options) {
       continue;
     }
     Tally one;
-    if (options.only_moved) {
-      move_while_building(options, here, one);
-      all.add(one);
-      continue;
-    }
     if (!options.only_drives && !options.only_building)
       carry(options, here, one);
     if (!options.only_carried && !options.only_building)
@@ -435,11 +374,6 @@ int run(const Options& options) {
         options.floors > 0 ? static_cast<double>(all("doors_false")) / options.floors : 1.0},
        {"built_well", all("well")},
        {"untrue_ends", all("untrue_ends")},
-       {"moved", all("moved")},
-       {"moved_noticed", all("moved_noticed")},
-       {"moved_unnoticed_ends", all("moved_unnoticed_ends")},
-       {"moved_m_p50", all.quantile("moved_way", 0.5)},
-       {"moved_m_p90", all.quantile("moved_way", 0.9)},
        {"carried_goals", all("carried")},
        {"carried_arrived", all("arrived")},
        {"lost_after_m_p50", all.quantile("lost_way", 0.5)},
@@ -470,10 +404,6 @@ int main(int argc, char** argv) {
                "only the patrols; the other figures are void");
   app.add_flag("--only-building", options.only_building,
                "only the building of maps; the other figures are void");
-  app.add_flag(
-      "--only-moved", options.only_moved,
-      "only the building of maps by a robot that is moved meanwhile; the other figures are "
-      "void");
   app.add_flag("--shipped", options.shipped, "also small-office, and office-floor with four seeds");
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
   if (const auto code = app.parse(argc, argv))

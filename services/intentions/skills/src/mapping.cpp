@@ -36,12 +36,6 @@ class ExploreUnknown : public Activity {
       return;
     }
     const World& world = self.world();
-    const Registered& registration = world.around.registration;
-    if (explorer_ && registration.state && !registration.adds_features) {
-      stand(self);
-      self.fail(v1::CODE_ACTIVITY, "registration has ended the map: " + registration.reason);
-      return;
-    }
     const std::optional<Pose> pose_in_map = world.robot_in_map();
     self.intend_behavior("Stop", "Stop", kRest, {});
     if (!pose_in_map || world.around.map == nullptr || world.around.lps == nullptr ||

@@ -127,7 +127,6 @@ class Core {
     bool building = false;
     Pose built_from;         ///< in the map, when building began
     bool too_large = false;  ///< the map has reached its largest size
-    std::string moved;       ///< why building has ended, until the robot has its place again
     std::uint64_t odom = 0;  ///< of the newest step
     Pose pose_in_odom;
     Pose pose_in_map;  ///< from the newest step; before that, the start

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,7 +13,6 @@
 #include "saphira/maps/edit.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/feature_graph.hpp"
-#include "saphira/registration/standing.hpp"
 
 namespace saphira::registration {
 
@@ -35,6 +33,7 @@ struct MapBuilderSettings {
   double same_opening = 0.45;  ///< [m] likewise
   double most_stray = 1.2;     ///< [m]
   double wall_gap = 5.5;       ///< [m] between stretches of one wall
+  double closure_way = 15.0;   ///< [m] of way after which another sighting closes a loop
 
   // Limits for a corridor.
   double min_width = 1.0;
@@ -103,27 +102,27 @@ class MapBuilder {
   const Eigen::Matrix3d& covariance() const { return covariance_; }
   /// Doors of the map that were not open the last two times that the robot passed.
   std::vector<std::uint32_t> closed() const;
-  /// The evidence that somebody has moved the robot while it found the pose together with the map,
-  /// in words; empty: none. The map has lost all that may have been seen since then.
-  const std::string& moved() const { return moved_; }
+  /// The number of sightings again after a long way.
+  int closures() const { return closures_; }
   const FeatureGraph& graph() const { return graph_; }
 
   template <class Archive>
   void archive(Archive& a) {
     a("sonars", settings_.sonars)("snap", settings_.snap_to_right_angle_grid)("given", given_)(
-        "graph", graph_)("known_points", known_points_)("taken", taken_)("ahead", ahead_)(
-        "driven_through", driven_through_)("editor", editor_)("own", own_)("door_of", door_of_)(
-        "wall_of", wall_of_)("start_in_map", start_in_map_)("placed", placed_)(
-        "believed", believed_)("odom", odom_)("pose_in_odom", pose_in_odom_)(
+        "graph", graph_)("known_lines", known_lines_)("known_points", known_points_)(
+        "taken", taken_)("ahead", ahead_)("driven_through", driven_through_)("editor", editor_)(
+        "own", own_)("door_of", door_of_)("wall_of", wall_of_)("start_in_map", start_in_map_)(
+        "placed", placed_)("believed", believed_)("odom", odom_)("pose_in_odom", pose_in_odom_)(
         "pose_in_map", pose_in_map_)("covariance", covariance_)("way", way_)(
-        "settled_way", settled_way_)("news", news_)("standing", standing_)("moved", moved_);
+        "settled_way", settled_way_)("news", news_)("closures", closures_);
   }
 
  private:
-  /// Data of an opening besides its place.
+  /// Data of a line or an opening besides its place.
   struct Known {
-    lps::PointType type = lps::PointType::door;  ///< or junction
-    double heading = 0.0;  ///< of its normal, in the map, at the first sighting
+    lps::PointType type = lps::PointType::wall;  ///< wall, door or junction
+    double heading = 0.0;   ///< of an opening: its normal, in the map, at the first sighting
+    double last_way = 0.0;  ///< [m] driven at the newest sighting
     Passes passes = {};
     bool beside = false;       ///< the robot is passing it
     bool found = false;        ///< ...and has seen it
@@ -159,10 +158,6 @@ class MapBuilder {
   void hear_walls(const MapBuilderInputs& inputs);
   void listen_ahead(const MapBuilderInputs& inputs);
   void pass();
-  bool carried_while_it_stood(const MapBuilderInputs& inputs);
-  bool is_in_a_door(const Vec2& at) const;
-  std::optional<std::size_t> last_node_before_a_crossing() const;
-  void forget_since(std::size_t node);
   void settle();
   void merge_lines();
   std::vector<std::pair<double, double>> stretches(const GraphLine& line) const;
@@ -179,6 +174,7 @@ class MapBuilder {
   MapBuilderSettings settings_;
   maps::Map given_;
   FeatureGraph graph_;
+  std::vector<Known> known_lines_;
   std::vector<Known> known_points_;
   std::map<std::uint32_t, Taken> taken_;  ///< by the percept's id
   std::vector<SeenPoint> ahead_;          ///< echoes from straight ahead
@@ -197,8 +193,7 @@ class MapBuilder {
   double way_ = 0.0;
   double settled_way_ = 0.0;
   bool news_ = false;
-  Standing standing_;
-  std::string moved_;
+  int closures_ = 0;
 };
 
 }  // namespace saphira::registration

@@ -66,7 +66,6 @@ bool at_rest(const Robot& robot);
 /// Registration's output.
 struct Registered {
   std::optional<v1::RegistrationState> state;  ///< none: there is no registration
-  std::string reason;                          ///< of the state, in words
   Pose pose_in_map;                            ///< of the robot; while lost: the best guess
   double confidence = 0.0;                     ///< [0..1]
   std::uint32_t environment = 0;               ///< the artifact around the robot; 0: none known
