@@ -128,10 +128,8 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
 /// where this service is gone. Switched off by another, it stays off; a registration that was gone
 /// is asked anew.
 void Core::ask_for_features(const intentions::Inputs& now, std::vector<Request>& requests) {
-  if (!now.around.registration.state) {
+  if (!now.around.registration.state && std::exchange(grows_, false))
     adds_features_ = false;
-    return;
-  }
   const Belief* const belief = executor_.beliefs().stored(kGrowsMap);
   const bool wanted = belief != nullptr && belief->value.truthy();
   const bool again =
@@ -140,6 +138,7 @@ void Core::ask_for_features(const intentions::Inputs& now, std::vector<Request>&
     requests.push_back(
         {"add_features", {truth("on", wanted), number("lease", wanted ? kFeaturesLease : 0.0)}});
   adds_features_ = wanted;
+  grows_ = wanted && (grows_ || now.around.registration.adds_features);
 }
 
 /// The nearest edges of the map, for the guard beside the robot. A map that is being built does not
@@ -275,9 +274,9 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
 void Core::archive(Archive& a) {
   a("processes", processes_)("executor", executor_)("remembers", remembers_)(
       "memory_damaged", memory_damaged_)("gaze", gaze_)("adds_features", adds_features_)(
-      "estop", estop_)("newest_grant", newest_grant_)("lps", lps_)("percepts", percepts_)(
-      "things", things_)("readings", readings_)("map", map_)("places", places_)(
-      "near_of", near_of_)("near", near_)("places_revision", places_revision_)(
+      "grows", grows_)("estop", estop_)("newest_grant", newest_grant_)("lps", lps_)(
+      "percepts", percepts_)("things", things_)("readings", readings_)("map", map_)(
+      "places", places_)("near_of", near_of_)("near", near_)("places_revision", places_revision_)(
       "newer_maps", newer_maps_)("requesters", requesters_)("owners", owners_)("answers", answers_)(
       "claimants", claimants_)("logged", logged_)("nodes", nodes_)("way", way_)(
       "beliefs_revision", beliefs_revision_)("robot_here", robot_here_)(

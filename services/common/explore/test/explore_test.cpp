@@ -37,13 +37,14 @@ TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
             << score.corridors_found << "/" << score.corridors << ", lengths to "
             << 100.0 * score.worst_length << " %, doors " << score.doors_found << "/" << score.doors
             << ", false " << score.corridors_false << "+" << score.doors_false << ", contacts "
-            << built.whole.drive().contacts() << ", pose to " << built.worst << " m;" << score.text
-            << "\n";
+            << built.whole.drive().contacts() << ", closures " << built.closures << ", pose to "
+            << built.worst << " m;" << score.text << "\n";
   EXPECT_TRUE(built.done()) << built.reason();
   EXPECT_EQ(score.corridors_found, score.corridors) << score.text;
   EXPECT_EQ(score.corridors_false, 0) << score.text;
   EXPECT_GE(score.doors_found, 0.9 * score.doors) << score.text;
   EXPECT_EQ(score.doors_false, 0) << score.text;
+  EXPECT_GT(built.closures, 0) << "the loop was not closed";
   EXPECT_EQ(built.whole.drive().contacts(), 0);
 }
 
