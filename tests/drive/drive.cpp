@@ -282,6 +282,7 @@ void Drive::see(std::vector<lps::SeenThing> things) {
   sees_->write({.stamp = {kEpoch, seen_.cycle},
                 .odom = kOdom,
                 .sees_people = true,
+                .sees_colors = true,
                 .things = converted(things_, [](const auto& one) { return lps::to_bus(one); })});
 }
 

@@ -138,8 +138,8 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
     if (!request.authorization.empty())
       audit_.wrong_key("MCP by HTTP", now(), keys_.keys().ended(key_of(request), unix_seconds()));
     return refuse(exchange, 401,
-                  "expected the header Authorization: Bearer TOKEN, with the first line of " +
-                      options_.token_file + ", or a person's key (saphira keys), as TOKEN");
+                  "expected the header Authorization: Bearer TOKEN; TOKEN is the first line of the "
+                  "file that saphira mcp names at its start, or a person's key (saphira keys)");
   }
   if (request.method == "DELETE") {
     const auto found = clients_.find(request.session);

@@ -15,8 +15,7 @@ namespace saphira::mcp {
 struct HttpDoorOptions {
   int port = 0;       ///< 0: any that is free
   std::string token;  ///< required in every request
-  std::string token_file;
-  std::string who;  ///< the asker, as shown to others
+  std::string who;    ///< the asker, as shown to others
   std::string version;
   std::string instructions;
   std::vector<std::string> described;  ///< agents, as of Robot

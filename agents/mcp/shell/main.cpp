@@ -43,10 +43,8 @@ struct Options {
 
 int serve_http(const bus::NodeOptions& options, const Options& own, const bus::Stop& stop) {
   bus::Node node(options);
-  mcp::HttpDoor door(
-      node, {*own.port, console::keep(own.token_file).key,
-             std::filesystem::absolute(own.token_file).lexically_normal().string(), own.who,
-             bus::version(), kInstructions, own.described, own.names, own.person_keys});
+  mcp::HttpDoor door(node, {*own.port, console::keep(own.token_file).key, own.who, bus::version(),
+                            kInstructions, own.described, own.names, own.person_keys});
   std::fprintf(stderr, "http://127.0.0.1:%d/mcp, with the token in %s\n", door.port(),
                own.token_file.c_str());
   door.run(stop);

@@ -15,6 +15,8 @@ std::optional<Answer> Core::device(const Request& request) {
       return Answer{AnswerCode::refused,
                     "the bridge was started without --vision: it knows of no vision system"};
     reflector_.request(request);
+    if (request.person && request.person->role != "services" && request.person->role != "robot")
+      put(v1::AuditEntry{.act = v1::AUDIT_ASKED, .who = request.source, .text = describe(request)});
     if (says)
       put(VisionSet{text_of(request.arguments, "text")});
     return std::nullopt;

@@ -484,8 +484,10 @@ void Dialogue::note_words(const Utterance& utterance, const Outputs& out) {
   constexpr std::size_t kMostSpeakers = 16;
   Words words{utterance.speaker, utterance.text, ""};
   for (const Said& one : out.said)
-    if (same_person(one.listener, utterance.speaker))
+    if (same_person(one.listener, utterance.speaker)) {
       words.answer += (words.answer.empty() ? "" : ". ") + one.text;
+      words.refused = words.refused || one.refused;
+    }
   if (words.answer.empty())
     return;  // it was to somebody else
   std::erase_if(words_,

@@ -173,7 +173,10 @@ void Dialogue::tell_of_waiting(const Situation& situation, Outputs& out) {
   }
 }
 
-std::string Dialogue::why(const Situation& situation) const {
+std::string Dialogue::why(const Situation& situation, const std::string& speaker) const {
+  const Words* const newest = words_of_speaker(speaker);
+  if (newest != nullptr && newest->refused && !newest->answer.starts_with("what?"))
+    return newest->answer;  // the reason for which that was not done
   const KnownGoal* const goal = reason_of(situation.goals);
   if (ended_ && (goal == nullptr || (v1::ended(goal->state) && goal->asker.empty()) ||
                  (goal->tag == stop_ && stop_ != 0 && !ended_->success)))
@@ -284,7 +287,7 @@ bool Dialogue::question_about_robot(const Meaning& meaning, const Utterance& utt
   } else if (functor == "what_are_you_doing") {
     say(utterance, doing(situation), true, out);
   } else if (functor == "why") {
-    say(utterance, why(situation), true, out);
+    say(utterance, why(situation, utterance.speaker), true, out);
   } else if (functor == "what_can_you_do" || functor == "talk") {
     const auto seconds = static_cast<std::int64_t>(utterance.time);
     const std::string time = seconds > 0 ? local_text(seconds, "%H:%M") : "unknown to me";

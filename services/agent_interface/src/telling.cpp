@@ -307,14 +307,18 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
   } else if (meaning.functor == "forget") {
     const std::string what = slot(meaning, "what");
     for (const Advice& one : knowledge_.all())
-      if (one.about == person && (what == "all"      ? one.kind != Kind::hazard
+      if (one.about == person && (what == "all"    ? one.kind != Kind::hazard
+                                  : what == "mine" ? one.kind != Kind::hazard &&
+                                                         same_person(one.speaker, utterance.speaker)
                                   : what == "office" ? one.kind == Kind::office_of
                                                      : one.kind == Kind::person_at))
         wrong.push_back(one);
     if (wrong.empty())
-      unknown = "nobody has told me " + (what == "all"      ? "anything about " + person
-                                         : what == "office" ? "where " + person + "'s office is"
-                                                            : "where " + person + " is");
+      unknown = what == "mine" ? "you have told me nothing about " + person
+                               : "nobody has told me " + (what == "all" ? "anything about " + person
+                                                          : what == "office"
+                                                              ? "where " + person + "'s office is"
+                                                              : "where " + person + " is");
   } else {
     return false;
   }

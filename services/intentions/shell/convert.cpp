@@ -130,7 +130,7 @@ v1::Drawing drawing_of(const std::vector<Vec2>& way) {
 }
 
 Core::Vision from_bus(const v1::Vision& vision) {
-  return {vision.stamp, vision.odom, vision.sees_people || vision.sees_colors,
+  return {vision.stamp, vision.odom, vision.sees_people || vision.sees_colors, vision.sees_colors,
           converted(vision.things, [](const auto& thing) { return lps::from_bus(thing); })};
 }
 

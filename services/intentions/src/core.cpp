@@ -231,6 +231,7 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
     if (vision->odom == inputs.robot.odom)
       things_ = vision->things;
     around.things = &things_;
+    around.sees_colors = vision->sees_colors;
   }
   around.registration = inputs.registered;
   newer_maps_.insert(newer_maps_.end(), inputs.maps.begin(), inputs.maps.end());

@@ -119,6 +119,9 @@ void add_seeing(Functions& functions) {
                 [](const World& world, Values) { return Value(world.robot.head); });
   functions.add("can-see", "whether there is a camera and somebody who looks at its pictures",
                 [](const World& world) { return Value::truth(world.around.things != nullptr); });
+  functions.add("can-see-colours", "whether one of them is for colours", [](const World& world) {
+    return Value::truth(world.around.things != nullptr && world.around.sees_colors);
+  });
 }
 
 }  // namespace saphira::intentions

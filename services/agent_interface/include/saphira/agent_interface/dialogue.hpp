@@ -190,6 +190,7 @@ class Dialogue {
     std::string speaker;
     std::string said;
     std::string answer;
+    bool refused = false;
   };
   struct Ended {       ///< the newest goal that has ended
     std::string task;  ///< in words
@@ -300,7 +301,7 @@ class Dialogue {
   /// The time that the rest of the way takes, by the map.
   std::string time_left(const Situation& situation) const;
   /// The reason for which the robot stands or drives.
-  std::string why(const Situation& situation) const;
+  std::string why(const Situation& situation, const std::string& speaker) const;
   /// Asks which of several meanings a sentence has.
   void choices(const Grammar::Understood& understood, const Utterance& utterance, Outputs& out);
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,

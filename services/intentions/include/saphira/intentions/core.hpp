@@ -93,7 +93,8 @@ class Core {
   struct Vision {
     v1::Stamp stamp;
     std::uint64_t odom = 0;
-    bool sees = false;  ///< a camera delivers
+    bool sees = false;         ///< a camera delivers
+    bool sees_colors = false;  ///< one for colours does
     std::vector<lps::SeenThing> things;
   };
 

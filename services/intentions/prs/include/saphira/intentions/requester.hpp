@@ -8,15 +8,12 @@
 
 namespace saphira::intentions {
 
-/// The program that asked for a goal, and the effect of its silence on the goal.
-///
-///     state       its cause                      a goal that ends with it  a goal that is to be
-///     kept heard       the program wrote the goal     goes on                   goes on cut off
-///     its writer is gone             waits, ends after 10 s    goes on recalled    the service was
-///     restarted      waits, ends after 10 min  waits, goes on after 3 s switched on the bridge was
-///     as well         waits, ends after 10 min  waits, ends after 3 s left        nobody asks for
-///     a kept goal    goes on                   goes on
-///
+/// The program that asked for a goal, and the effect of its silence on the goal:
+/// - heard: it has written the goal, which goes on;
+/// - cut off: its writer is gone. The goal waits, and ends after 10 s; a kept one goes on;
+/// - recalled: the service was restarted. It waits for 10 min; a kept one goes on after 3 s;
+/// - switched on: the bridge was restarted as well. Likewise; a kept one ends after 3 s;
+/// - left: nobody asks for a kept goal any more. It goes on.
 /// A goal that waits goes on when its program is heard.
 class Requester {
  public:

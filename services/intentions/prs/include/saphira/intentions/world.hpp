@@ -79,6 +79,7 @@ struct Surroundings {
   const std::vector<lps::Percept>* percepts = nullptr;  ///< none: no interpretation
   /// People and colours; none: no camera, or no vision service.
   const std::vector<lps::SeenThing>* things = nullptr;
+  bool sees_colors = false;
   std::uint64_t cycle = 0;  ///< of the robot, as in the percepts
   Registered registration;
   std::shared_ptr<const maps::Topology> topology;  ///< none: no map
