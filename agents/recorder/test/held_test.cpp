@@ -1,4 +1,4 @@
-// The name of a recording, and what is there before.
+// A recording under a name at which another one may be.
 #include "held.hpp"
 
 #include <gtest/gtest.h>

@@ -80,6 +80,10 @@ class Bridge : public saphira::test::LinePlayer {
            s_->deliver();
          }},
         {"request", [this](auto& in) { request(in); }},
+        {"karen-requests",
+         [this](auto& in) {
+           request(in, Identity{"karen", "operator"});
+         }},
         {"turns-servo",
          [this](auto& in) { EXPECT_TRUE(s_->was_sent(protocol::Ptu{read<std::uint16_t>(in)})); }},
         {"permit",
@@ -251,8 +255,9 @@ class Bridge : public saphira::test::LinePlayer {
       around.keeper_alive = rest(in) == "alive";
   }
   /// "request NUMBER FUNCTOR arguments"; the number 0 is of an asker that does not count.
-  void request(std::istringstream& in) {
+  void request(std::istringstream& in, const Checked& person = {}) {
     Request asked;
+    asked.person = person;
     asked.source = "a person";
     asked.number = read<std::uint64_t>(in);
     asked.functor = read<std::string>(in);
@@ -431,7 +436,7 @@ class Bridge : public saphira::test::LinePlayer {
 };
 
 TEST(Bridge, IsAsWritten) {
-  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 84);
+  EXPECT_EQ(saphira::test::play<Bridge>("bridge/core/test/cases.txt"), 85);
 }
 
 }  // namespace

@@ -476,13 +476,13 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
 
 Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& situation) {
   Outputs out = changing([&](Outputs& more) { take_in(utterance, situation, more); });
-  note_words(utterance, out);
+  note_words(utterance, situation.now, out);
   return out;
 }
 
-void Dialogue::note_words(const Utterance& utterance, const Outputs& out) {
+void Dialogue::note_words(const Utterance& utterance, double now, const Outputs& out) {
   constexpr std::size_t kMostSpeakers = 16;
-  Words words{utterance.speaker, utterance.text, ""};
+  Words words{utterance.speaker, utterance.text, "", now};
   for (const Said& one : out.said)
     if (same_person(one.listener, utterance.speaker)) {
       words.answer += (words.answer.empty() ? "" : ". ") + one.text;

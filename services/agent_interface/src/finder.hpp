@@ -11,7 +11,7 @@
 
 namespace saphira::agent_interface {
 
-/// Signs for what a pattern may begin or end with, beside its own words.
+/// Signs for a text, a name and a number at the beginning or end of a pattern.
 inline constexpr const char* kAnyText = "...";
 inline constexpr const char* kAnyName = "{}";
 inline constexpr const char* kAnyNumber = "<number>";

@@ -175,7 +175,9 @@ void Dialogue::tell_of_waiting(const Situation& situation, Outputs& out) {
 
 std::string Dialogue::why(const Situation& situation, const std::string& speaker) const {
   const Words* const newest = words_of_speaker(speaker);
-  if (newest != nullptr && newest->refused && !newest->answer.starts_with("what?"))
+  constexpr double kLately = 60.0;  // [s]
+  if (newest != nullptr && newest->refused && situation.now - newest->time < kLately &&
+      !newest->answer.starts_with("what?"))
     return newest->answer;  // the reason for which that was not done
   const KnownGoal* const goal = reason_of(situation.goals);
   if (ended_ && (goal == nullptr || (v1::ended(goal->state) && goal->asker.empty()) ||

@@ -128,8 +128,10 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
 /// where this service is gone. Switched off by another, it stays off; a registration that was gone
 /// is asked anew.
 void Core::ask_for_features(const intentions::Inputs& now, std::vector<Request>& requests) {
-  if (!now.around.registration.state && std::exchange(grows_, false))
-    adds_features_ = false;
+  if (!now.around.registration.state)
+    lost_growing_ = lost_growing_ || grows_;
+  else if (std::exchange(lost_growing_, false))
+    adds_features_ = grows_ = false;
   const Belief* const belief = executor_.beliefs().stored(kGrowsMap);
   const bool wanted = belief != nullptr && belief->value.truthy();
   const bool again =
@@ -275,13 +277,14 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
 void Core::archive(Archive& a) {
   a("processes", processes_)("executor", executor_)("remembers", remembers_)(
       "memory_damaged", memory_damaged_)("gaze", gaze_)("adds_features", adds_features_)(
-      "grows", grows_)("estop", estop_)("newest_grant", newest_grant_)("lps", lps_)(
-      "percepts", percepts_)("things", things_)("readings", readings_)("map", map_)(
-      "places", places_)("near_of", near_of_)("near", near_)("places_revision", places_revision_)(
-      "newer_maps", newer_maps_)("requesters", requesters_)("owners", owners_)("answers", answers_)(
-      "claimants", claimants_)("logged", logged_)("nodes", nodes_)("way", way_)(
-      "beliefs_revision", beliefs_revision_)("robot_here", robot_here_)(
-      "heard_epoch", heard_epoch_)("registration_heard", registration_heard_);
+      "grows", grows_)("lost_growing", lost_growing_)("estop", estop_)(
+      "newest_grant", newest_grant_)("lps", lps_)("percepts", percepts_)("things", things_)(
+      "readings", readings_)("map", map_)("places", places_)("near_of", near_of_)("near", near_)(
+      "places_revision", places_revision_)("newer_maps", newer_maps_)("requesters", requesters_)(
+      "owners", owners_)("answers", answers_)("claimants", claimants_)("logged", logged_)(
+      "nodes", nodes_)("way", way_)("beliefs_revision", beliefs_revision_)(
+      "robot_here", robot_here_)("heard_epoch", heard_epoch_)("registration_heard",
+                                                              registration_heard_);
   if (!a.restores())
     return;
   topology_ = places_ ? std::make_shared<const maps::Topology>(*places_) : nullptr;

@@ -142,8 +142,12 @@ class Programs : public test::LinePlayer {
          [this](auto& in) { site_.inputs.robot.odom_in_map = test::pose_of(rest(in)); }},
         {"registration",
          [this](auto& in) {
+           const std::string state = rest(in);
            site_.inputs.registered.state =
-               rest(in) == "lost" ? v1::REGISTRATION_LOST : v1::REGISTRATION_TRACKING;
+               state == "lost" ? v1::REGISTRATION_LOST : v1::REGISTRATION_TRACKING;
+           if (state == "gone")
+             site_.inputs.registered.state.reset();
+           site_.inputs.registered.adds_features = state == "grows";
          }},
         {"says", [this](auto& in) {
            expect_like(joined(notes_.lines(), " | ", [](const Note& one) { return one.text; }),
@@ -166,6 +170,11 @@ class Programs : public test::LinePlayer {
                  return joined(out_.audit, ", ", [](const v1::AuditEntry& one) {
                    return one.who + " " + std::string(v1::name_of(one.act)).substr(6);
                  });
+               }},
+              {"asks registration",
+               [this] {
+                 return joined(out_.intended.requests, " ",
+                               [](const Request& one) { return one.functor; });
                }},
               {"edges", [this] { return std::to_string(out_.edges.size()); }},
               {"nearest edge", [this] {
@@ -327,7 +336,7 @@ class Programs : public test::LinePlayer {
 };
 
 TEST(IntentionsCore, DoesAsWritten) {
-  EXPECT_EQ(test::play<Programs>("services/intentions/test/core.txt"), 35);
+  EXPECT_EQ(test::play<Programs>("services/intentions/test/core.txt"), 36);
 }
 
 class CoreTest : public testing::Test, protected Site {};

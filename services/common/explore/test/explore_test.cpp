@@ -123,7 +123,8 @@ TEST(Explorer, AWayThatItCannotFollowIsLeft) {
   EXPECT_EQ(explorer.left(map), std::vector<std::string>{"straight on (closed)"});
 }
 
-/// Follows the explorer along the x axis, and returns what is left. `stays`: not on the way back.
+/// A robot that goes where the explorer wants along the x axis. stays: but not the way back.
+/// Returns Explorer::left().
 std::vector<std::string> left_after_a_corridor(bool stays) {
   Settings settings;
   settings.sonars = {{0, {0.2, 0.0, 0.0}}, {1, {0.0, 0.2, kPi / 2}}, {2, {0.0, -0.2, -kPi / 2}}};

@@ -2,19 +2,18 @@
 
 #include <utility>
 
+#include "saphira/base/text.hpp"
+
 namespace saphira::intentions {
 namespace {
 
 constexpr Ticks kSaveAgain = 10;
 
-/// To the saved length. Characters of more than one byte stay whole.
+/// To the saved length.
 std::string shortened(const std::string& reason) {
-  if (reason.size() <= kLongestReason)
-    return reason;
-  std::size_t end = kLongestReason - 3;
-  while (end > 0 && (static_cast<unsigned char>(reason[end]) & 0xc0U) == 0x80U)
-    --end;
-  return reason.substr(0, end) + "...";
+  return reason.size() <= kLongestReason
+             ? reason
+             : std::string(first_letters(reason, kLongestReason - 3)) + "...";
 }
 
 }  // namespace

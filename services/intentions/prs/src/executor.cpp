@@ -20,10 +20,11 @@ constexpr const char* kPositionLost =
     "the goal is cannot be told";
 
 std::string name_of_goal(const Goal& goal) {
-  constexpr std::size_t kLongest = 100;  // letters
+  constexpr std::size_t kLongest = 100;  // bytes
   std::string name = goal.functor;
   if (const std::string arguments = describe(goal.arguments); !arguments.empty())
-    name += " " + (arguments.size() > kLongest ? arguments.substr(0, kLongest) + "..." : arguments);
+    name += " " + std::string(first_letters(arguments, kLongest)) +
+            (arguments.size() > kLongest ? "..." : "");
   if (!goal.requester.empty())
     name += " of " + quoted(goal.requester);
   return name;

@@ -190,6 +190,7 @@ class Dialogue {
     std::string speaker;
     std::string said;
     std::string answer;
+    double time = 0.0;  ///< [s] as Situation::now
     bool refused = false;
   };
   struct Ended {       ///< the newest goal that has ended
@@ -293,7 +294,7 @@ class Dialogue {
   std::string in_words(const Meaning& meaning) const;
   /// The known person of "karens office", written without apostrophe; empty: none.
   std::string owner_in(const std::string& name) const;
-  void note_words(const Utterance& utterance, const Outputs& out);
+  void note_words(const Utterance& utterance, double now, const Outputs& out);
   const Words* words_of_speaker(const std::string& name) const;
   /// The sources of the facts in the newest answer to this speaker, or of those about somebody.
   std::string sources(const Meaning& meaning, const Utterance& utterance,

@@ -168,7 +168,7 @@ class Grammar {
   std::map<std::string, std::vector<Entry>> lists_;
   std::vector<Rule> rules_;
   using Place = std::pair<std::size_t, std::size_t>;  ///< of a rule, and of a pattern in it
-  /// The patterns that may begin with a word, or with what a sign is for.
+  /// Patterns by the word, or the sign (finder.hpp), with which they may begin.
   std::map<std::string, std::vector<Place>> begun_by_;
 };
 

@@ -198,6 +198,7 @@ class Core {
   std::string told_trouble_;    ///< as of the newest step
   bool adds_features_ = false;  ///< an intention lets the map grow
   bool grows_ = false;          ///< and registration has said that it does
+  bool lost_growing_ = false;   ///< registration was gone meanwhile
   std::string estop_;           ///< the program that pressed the latched emergency stop
   std::optional<Received::Grant> newest_grant_;
   std::optional<lps::LocalPerceptualSpace> lps_;
