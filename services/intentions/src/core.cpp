@@ -128,19 +128,18 @@ SpeedLimit Core::limit_of(const intentions::Inputs& now,
 /// where this service is gone. Switched off by another, it stays off; a registration that was gone
 /// is asked anew.
 void Core::ask_for_features(const intentions::Inputs& now, std::vector<Request>& requests) {
-  if (!now.around.registration.state)
-    lost_growing_ = lost_growing_ || grows_;
-  else if (std::exchange(lost_growing_, false))
-    adds_features_ = grows_ = false;
+  const bool heard = now.around.registration.state.has_value();
+  const bool returned = heard && !hears_registration_;
+  hears_registration_ = heard;
   const Belief* const belief = executor_.beliefs().stored(kGrowsMap);
   const bool wanted = belief != nullptr && belief->value.truthy();
   const bool again =
-      wanted && now.around.registration.adds_features && now.cycle % kAskFeatures == 0;
+      wanted &&
+      (returned || (now.around.registration.adds_features && now.cycle % kAskFeatures == 0));
   if (wanted != adds_features_ || again)
     requests.push_back(
         {"add_features", {truth("on", wanted), number("lease", wanted ? kFeaturesLease : 0.0)}});
   adds_features_ = wanted;
-  grows_ = wanted && (grows_ || now.around.registration.adds_features);
 }
 
 /// The nearest edges of the map, for the guard beside the robot. A map that is being built does not
@@ -277,14 +276,13 @@ void Core::take_maps(std::optional<std::uint64_t> revision) {
 void Core::archive(Archive& a) {
   a("processes", processes_)("executor", executor_)("remembers", remembers_)(
       "memory_damaged", memory_damaged_)("gaze", gaze_)("adds_features", adds_features_)(
-      "grows", grows_)("lost_growing", lost_growing_)("estop", estop_)(
-      "newest_grant", newest_grant_)("lps", lps_)("percepts", percepts_)("things", things_)(
-      "readings", readings_)("map", map_)("places", places_)("near_of", near_of_)("near", near_)(
-      "places_revision", places_revision_)("newer_maps", newer_maps_)("requesters", requesters_)(
-      "owners", owners_)("answers", answers_)("claimants", claimants_)("logged", logged_)(
-      "nodes", nodes_)("way", way_)("beliefs_revision", beliefs_revision_)(
-      "robot_here", robot_here_)("heard_epoch", heard_epoch_)("registration_heard",
-                                                              registration_heard_);
+      "hears_registration", hears_registration_)("estop", estop_)("newest_grant", newest_grant_)(
+      "lps", lps_)("percepts", percepts_)("things", things_)("readings", readings_)("map", map_)(
+      "places", places_)("near_of", near_of_)("near", near_)("places_revision", places_revision_)(
+      "newer_maps", newer_maps_)("requesters", requesters_)("owners", owners_)("answers", answers_)(
+      "claimants", claimants_)("logged", logged_)("nodes", nodes_)("way", way_)(
+      "beliefs_revision", beliefs_revision_)("robot_here", robot_here_)(
+      "heard_epoch", heard_epoch_)("registration_heard", registration_heard_);
   if (!a.restores())
     return;
   topology_ = places_ ? std::make_shared<const maps::Topology>(*places_) : nullptr;

@@ -197,9 +197,8 @@ class Core {
   std::string disk_trouble_;    ///< why not all is saved; empty: all is
   std::string told_trouble_;    ///< as of the newest step
   bool adds_features_ = false;  ///< an intention lets the map grow
-  bool grows_ = false;          ///< and registration has said that it does
-  bool lost_growing_ = false;   ///< registration was gone meanwhile
-  std::string estop_;           ///< the program that pressed the latched emergency stop
+  bool hears_registration_ = false;
+  std::string estop_;  ///< the program that pressed the latched emergency stop
   std::optional<Received::Grant> newest_grant_;
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;
