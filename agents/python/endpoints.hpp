@@ -6,8 +6,8 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
+#include <vector>
 
 #include "saphira/bus/node.hpp"
 
@@ -30,6 +30,36 @@ auto unlocked(F f) {
   }
 }
 
+/// The calls from Python into this module that a thread is in. They use what another thread or a
+/// signal's handler closes meanwhile: it ends with the outermost of them.
+struct Calls {
+  static const std::shared_ptr<Calls>& of_this_thread() {
+    thread_local const auto own = std::make_shared<Calls>();
+    return own;
+  }
+
+  int depth = 0;
+  std::vector<std::shared_ptr<void>> closed;  ///< in the order of their ends
+};
+
+/// One of them.
+class Call {
+ public:
+  Call() { ++calls_.depth; }
+  ~Call() {
+    // Other threads run meanwhile, and may close more.
+    while (calls_.depth == 1 && !calls_.closed.empty())
+      for (auto& each : std::exchange(calls_.closed, {}))
+        each.reset();
+    --calls_.depth;
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+ private:
+  Calls& calls_ = *Calls::of_this_thread();
+};
+
 /// The thread and the process that own a bus.
 class Owner {
  public:
@@ -37,14 +67,29 @@ class Owner {
   void check() const {
     if (is_forked())
       throw std::runtime_error("this bus is of the parent process: connect again after a fork");
-    if (std::this_thread::get_id() != thread_)
+    if (Calls::of_this_thread() != calls_)
       throw std::runtime_error("this bus is of another thread: connect in each thread");
   }
-  bool may_close() const { return !is_forked() && std::this_thread::get_id() == thread_; }
+  /// Ends it, after the owner's call that is underway. After a fork its threads are not here: it
+  /// stays.
+  template <class T>
+  void end(std::unique_ptr<T> own) const {
+    T* const ends = own.release();
+    if (ends == nullptr || is_forked())
+      return;
+    std::shared_ptr<void> closed(ends, [](void* each) {
+      unlocked([each] {
+        delete static_cast<T*>(each);
+        return 0;
+      });
+    });
+    if (calls_->depth > 0)
+      calls_->closed.push_back(std::move(closed));
+  }
 
  private:
   const pid_t process_ = getpid();
-  const std::thread::id thread_ = std::this_thread::get_id();
+  const std::shared_ptr<Calls> calls_ = Calls::of_this_thread();
 };
 
 /// An endpoint on a bus, such as a reader. It is closed before its bus is.
@@ -60,12 +105,7 @@ class Owned : public Face {
  public:
   Owned(const Owner& owner, std::unique_ptr<Kind> kind) : owner_(owner), kind_(std::move(kind)) {}
   ~Owned() override { close(); }
-  void close() final {
-    if (owner_.may_close())
-      kind_.reset();
-    else
-      static_cast<void>(kind_.release());  // its threads are not here
-  }
+  void close() final { owner_.end(std::move(kind_)); }
 
   /// std::runtime_error where it may not be used.
   Kind& kind() {

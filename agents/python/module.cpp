@@ -49,21 +49,18 @@ constexpr milliseconds kRepeat{20};       ///< between looks at requests that ar
 constexpr milliseconds kLeave{1000};      ///< for these, until the bus is left
 constexpr double kForever = 1e9;          ///< [s] and more would not fit a clock
 
-/// The parts that live with the node.
-struct Parts {
-  explicit Parts(const bus::NodeOptions& options) : node(options), processes(node) {}
-  bus::Node node;
-  watch::Processes processes;
-  std::optional<bus::GoalClient> goals;  ///< once one is asked for: not every role may
-  std::optional<bus::Agent> agent;
-  std::vector<v1::Request> asked;  ///< of the agent: it answers UNDERWAY, and Python the end
-};
-
 /// The requests. A thread writes those that no program has answered again, also while Python is at
 /// something else: a stop must be heard. For one other thread; it never calls Python.
 class Requests {
  public:
   explicit Requests(bus::Node& node) : node_(node) {}
+  /// Waits for a moment until all that was sent is heard.
+  ~Requests() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLeave, [this] { return unheard_.empty(); });
+  }
+  Requests(const Requests&) = delete;
+  Requests& operator=(const Requests&) = delete;
 
   std::uint64_t send(const std::string& topic, const v1::Request& request, double patience) {
     const std::scoped_lock lock(mutex_);
@@ -88,11 +85,6 @@ class Requests {
     const std::scoped_lock lock(mutex_);
     poll();
     return std::exchange(told_, {});
-  }
-  /// Waits for a moment until all that was sent is heard.
-  void deliver() {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kLeave, [this] { return unheard_.empty(); });
   }
 
  private:
@@ -127,6 +119,25 @@ class Requests {
   std::set<std::uint64_t> unheard_;                    ///< no program has answered them yet
   std::vector<v1::Answer> told_;
   std::jthread repeater_;  ///< once something is asked
+};
+
+/// The parts that live with the node.
+struct Parts {
+  explicit Parts(const bus::NodeOptions& options)
+      : node(options), processes(node), requests(node) {}
+  ~Parts() {
+    if (goals)
+      goals->leave();
+  }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  bus::Node node;
+  watch::Processes processes;
+  Requests requests;
+  std::optional<bus::GoalClient> goals;  ///< once one is asked for: not every role may
+  std::optional<bus::Agent> agent;
+  std::vector<v1::Request> asked;  ///< of the agent: it answers UNDERWAY, and Python the end
 };
 
 using Driver = Owned<Endpoint, cli::DirectDriver>;
@@ -178,31 +189,21 @@ class Bus {
     if (const auto meant = cli::bus_meant(cli::bus_of("", options), cli::running_buses(), given))
       options = cli::on_bus(*meant, options);
     parts_ = unlocked([&] { return std::make_unique<Parts>(options); });
-    requests_ = std::make_unique<Requests>(parts_->node);
   }
   ~Bus() { close(); }
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Leaves the bus, which ends the goals. In another thread or process than its own: nothing.
+  /// Leaves the bus, which ends the goals: at once, or with the owner's call that is underway.
   void close() {
-    if (!owner_.may_close()) {
-      static_cast<void>(requests_.release());
-      static_cast<void>(parts_.release());
-      return;
-    }
     for (const auto& weak : endpoints_)
       if (const auto endpoint = weak.lock())
         endpoint->close();
-    if (parts_)
-      unlocked([this] {
-        requests_->deliver();
-        requests_.reset();
-        parts_.reset();
-        return 0;
-      });
+    if (parts_ && !owner_.is_forked())
+      parts_->node.wake();  // from a wait
+    owner_.end(std::move(parts_));
   }
-  bool is_open() const { return parts_ && owner_.may_close(); }
+  bool is_open() const { return parts_ && !owner_.is_forked(); }
 
   const bus::NodeOptions& options() { return node().options(); }
   std::uint64_t instance() { return node().instance(); }
@@ -221,6 +222,8 @@ class Bus {
           [&] { return own.wait(std::max(milliseconds(0), std::min(left, kPollPeriod))); });
       if (PyErr_CheckSignals() != 0)
         throw py::error_already_set();
+      if (!parts_)
+        throw std::runtime_error("the bus is closed");
       if (came || left <= kPollPeriod)
         return came;
     }
@@ -265,21 +268,20 @@ class Bus {
 
   /// patience: [s] for the end; without a deadline in the request, after each answer.
   std::uint64_t send(const std::string& topic, py::handle request, double patience) {
-    parts();
+    Requests& own = parts().requests;
     const auto asked = sample_of<v1::Request>(request, "Request");
-    return unlocked([&] { return requests_->send(topic, asked, patience); });
+    return unlocked([&] { return own.send(topic, asked, patience); });
   }
   void withdraw(const std::string& topic, std::uint64_t number) {
-    parts();
+    Requests& own = parts().requests;
     unlocked([&] {
-      requests_->withdraw(topic, number);
+      own.withdraw(topic, number);
       return 0;
     });
   }
   py::list answers() {
-    parts();
     py::list list;
-    for (const v1::Answer& answer : requests_->take())
+    for (const v1::Answer& answer : parts().requests.take())
       list.append(to_python(answer, class_of("Answer")));
     return list;
   }
@@ -365,7 +367,6 @@ class Bus {
   const Owner owner_;
   const std::string summary_;  ///< of the agent
   std::unique_ptr<Parts> parts_;
-  std::unique_ptr<Requests> requests_;  ///< on the node of the parts
   std::vector<std::weak_ptr<Endpoint>> endpoints_;
 };
 
@@ -376,42 +377,52 @@ PYBIND11_MODULE(_bus, module) {
   using namespace saphira::python;
   namespace py = pybind11;
   using py::arg;
+  const py::call_guard<Call> in_call;
   module.attr("version") = saphira::bus::version();
-  module.def("there_and_back", &there_and_back);
+  module.def("there_and_back", &there_and_back, in_call);
   module.def("advice_after_failure", [](py::handle goal) {
     return saphira::cli::advice_after_failure(sample_of<saphira::v1::Goal>(goal, "Goal"));
   });
   py::class_<AnyReader, std::shared_ptr<AnyReader>>(module, "Reader")
-      .def("take", &AnyReader::take)
-      .def("matched", &AnyReader::matched)
-      .def("close", &AnyReader::close);
+      .def("take", &AnyReader::take, in_call)
+      .def("matched", &AnyReader::matched, in_call)
+      .def("close", &AnyReader::close, in_call);
   py::class_<AnyWriter, std::shared_ptr<AnyWriter>>(module, "Writer")
-      .def("write", &AnyWriter::write)
-      .def("dispose", &AnyWriter::dispose)
-      .def("matched", &AnyWriter::matched)
-      .def("close", &AnyWriter::close);
+      .def("write", &AnyWriter::write, in_call)
+      .def("dispose", &AnyWriter::dispose, in_call)
+      .def("matched", &AnyWriter::matched, in_call)
+      .def("close", &AnyWriter::close, in_call);
   py::class_<Driver, std::shared_ptr<Driver>>(module, "Driver")
-      .def("drive",
-           [](Driver& driver, py::handle command) {
-             driver.kind().drive(sample_of<saphira::v1::MotorCommand>(command, "MotorCommand"));
-           })
-      .def("release",
-           [](Driver& driver) {
-             auto& own = driver.kind();
-             unlocked([&] {
-               own.release();
-               return 0;
-             });
-           })
-      .def("poll", [](Driver& driver) { driver.kind().poll(); })
-      .def("drives", [](Driver& driver) { return driver.kind().drives(); })
-      .def("trouble", [](Driver& driver) { return driver.kind().trouble(); })
-      .def("stopped_by", [](Driver& driver) { return driver.kind().stopped_by(); })
-      .def("close", &Driver::close);
+      .def(
+          "drive",
+          [](Driver& driver, py::handle command) {
+            driver.kind().drive(sample_of<saphira::v1::MotorCommand>(command, "MotorCommand"));
+          },
+          in_call)
+      .def(
+          "release",
+          [](Driver& driver) {
+            auto& own = driver.kind();
+            unlocked([&] {
+              own.release();
+              return 0;
+            });
+          },
+          in_call)
+      .def(
+          "poll", [](Driver& driver) { driver.kind().poll(); }, in_call)
+      .def(
+          "drives", [](Driver& driver) { return driver.kind().drives(); }, in_call)
+      .def(
+          "trouble", [](Driver& driver) { return driver.kind().trouble(); }, in_call)
+      .def(
+          "stopped_by", [](Driver& driver) { return driver.kind().stopped_by(); }, in_call)
+      .def("close", &Driver::close, in_call);
   py::class_<Inquiry, std::shared_ptr<Inquiry>>(module, "Inquiry")
-      .def("poll", [](Inquiry& asked) { return asked.kind().poll(); })
-      .def("explanation", &explanation)
-      .def("close", &Inquiry::close);
+      .def(
+          "poll", [](Inquiry& asked) { return asked.kind().poll(); }, in_call)
+      .def("explanation", &explanation, in_call)
+      .def("close", &Inquiry::close, in_call);
   py::class_<Bus>(module, "Bus")
       .def(py::init<const std::string&, const std::optional<std::string>&,
                     const std::optional<std::uint32_t>&, const std::optional<std::string>&,
@@ -419,33 +430,36 @@ PYBIND11_MODULE(_bus, module) {
                     std::string>(),
            arg("name"), arg("robot"), arg("domain"), arg("profile"), arg("peers"), arg("security"),
            arg("summary"))
-      .def("close", &Bus::close)
-      .def("is_open", &Bus::is_open)
-      .def("name", [](Bus& bus) { return bus.options().name; })
-      .def("robot", [](Bus& bus) { return bus.options().robot; })
-      .def("domain", [](Bus& bus) { return bus.options().domain; })
-      .def("instance", &Bus::instance)
-      .def("fd", &Bus::fd)
-      .def("clear_wake", &Bus::clear_wake)
-      .def("wait", &Bus::wait)
-      .def("poll", &Bus::poll)
-      .def("who_is_there", &Bus::who_is_there)
-      .def("is_empty", &Bus::is_empty)
-      .def("absence", &Bus::absence)
-      .def("ask_goal", &Bus::ask_goal)
-      .def("cancel", &Bus::cancel)
-      .def("status", &Bus::status)
-      .def("send", &Bus::send)
-      .def("withdraw", &Bus::withdraw)
-      .def("answers", &Bus::answers)
-      .def("can", &Bus::can)
-      .def("requests", &Bus::requests)
-      .def("answer", &Bus::answer)
-      .def("set", &Bus::set)
-      .def("take_back", &Bus::take_back)
-      .def("tell", &Bus::tell)
-      .def("driver", &Bus::driver)
-      .def("inquiry", &Bus::inquiry)
-      .def("reader", &Bus::reader)
-      .def("writer", &Bus::writer);
+      .def("close", &Bus::close, in_call)
+      .def("is_open", &Bus::is_open, in_call)
+      .def(
+          "name", [](Bus& bus) { return bus.options().name; }, in_call)
+      .def(
+          "robot", [](Bus& bus) { return bus.options().robot; }, in_call)
+      .def(
+          "domain", [](Bus& bus) { return bus.options().domain; }, in_call)
+      .def("instance", &Bus::instance, in_call)
+      .def("fd", &Bus::fd, in_call)
+      .def("clear_wake", &Bus::clear_wake, in_call)
+      .def("wait", &Bus::wait, in_call)
+      .def("poll", &Bus::poll, in_call)
+      .def("who_is_there", &Bus::who_is_there, in_call)
+      .def("is_empty", &Bus::is_empty, in_call)
+      .def("absence", &Bus::absence, in_call)
+      .def("ask_goal", &Bus::ask_goal, in_call)
+      .def("cancel", &Bus::cancel, in_call)
+      .def("status", &Bus::status, in_call)
+      .def("send", &Bus::send, in_call)
+      .def("withdraw", &Bus::withdraw, in_call)
+      .def("answers", &Bus::answers, in_call)
+      .def("can", &Bus::can, in_call)
+      .def("requests", &Bus::requests, in_call)
+      .def("answer", &Bus::answer, in_call)
+      .def("set", &Bus::set, in_call)
+      .def("take_back", &Bus::take_back, in_call)
+      .def("tell", &Bus::tell, in_call)
+      .def("driver", &Bus::driver, in_call)
+      .def("inquiry", &Bus::inquiry, in_call)
+      .def("reader", &Bus::reader, in_call)
+      .def("writer", &Bus::writer, in_call);
 }

@@ -90,9 +90,9 @@ def _refusal(functor: str, error: Exception) -> v1.Answer:
         code = error.code
         if not isinstance(code, v1.AnswerCode):
             code = v1.AnswerCode.ANSWER_REFUSED
-        return v1.Answer(code=code, text=str(error))
+        return v1.Answer(code=code, text=str(error).replace("\0", "\\0"))
     traceback.print_exception(error)
-    text = f"{functor} has failed: {type(error).__name__}: {error}"
+    text = f"{functor} has failed: {type(error).__name__}: {error}".replace("\0", "\\0")
     return v1.Answer(code=v1.AnswerCode.ANSWER_REFUSED, text=text)
 
 
@@ -119,10 +119,16 @@ class Served:
             inspect.signature(function).bind(**given)
         except (TypeError, ValueError) as error:
             wrong = v1.Answer(code=v1.AnswerCode.ANSWER_BAD_ARGUMENT, text=str(error))
-            self._answer(request, wrong)
+            self._give(request, wrong)
             return
         if inspect.iscoroutinefunction(function):
-            task = asyncio.get_running_loop().create_task(self._work(request, function, given))
+            try:
+                loop = asyncio.get_running_loop()
+            except RuntimeError:
+                text = f"{request.functor} is an async function, and its program runs no asyncio"
+                self._give(request, v1.Answer(code=v1.AnswerCode.ANSWER_REFUSED, text=text))
+                return
+            task = loop.create_task(self._work(request, function, given))
             self._tasks[key] = task
             task.add_done_callback(lambda _: self._tasks.pop(key, None))
             return
@@ -130,7 +136,7 @@ class Served:
             answer = _answer(function(**given))
         except Exception as error:
             answer = _refusal(request.functor, error)
-        self._answer(request, answer)
+        self._give(request, answer)
 
     async def _work(
         self, request: v1.Request, function: Callable[..., Any], given: dict[str, Any]
@@ -141,6 +147,12 @@ class Served:
             answer = _refusal(request.functor, error)
         except asyncio.CancelledError:
             withdrawn = v1.Answer(code=v1.AnswerCode.ANSWER_REFUSED, text="withdrawn")
-            self._answer(request, withdrawn)
+            self._give(request, withdrawn)
             raise
-        self._answer(request, answer)
+        self._give(request, answer)
+
+    def _give(self, request: v1.Request, answer: v1.Answer) -> None:
+        try:
+            self._answer(request, answer)
+        except ValueError as error:  # such as a text with a zero character
+            self._answer(request, _refusal(request.functor, error))

@@ -100,6 +100,26 @@ def test_what_fails_is_refused_and_harms_nothing() -> None:
     assert asked(lambda: 3).code == v1.AnswerCode.ANSWER_REFUSED
 
 
+def test_an_answer_that_the_bus_does_not_take_is_a_refusal() -> None:
+    answers: list[v1.Answer] = []
+
+    def take(_: v1.Request, answer: v1.Answer) -> None:
+        if "\0" in answer.text:
+            raise ValueError("Answer.text: found a zero\0 character")
+        answers.append(answer)
+
+    served = Served(take)
+    served.add("f", lambda: "a\0b")
+    served.handle(v1.Request(functor="f"))
+    assert [answer.code for answer in answers] == [v1.AnswerCode.ANSWER_REFUSED]
+
+
+def test_an_async_function_needs_asyncio() -> None:
+    async def slow() -> None: ...
+
+    assert asked(slow).code == v1.AnswerCode.ANSWER_REFUSED
+
+
 def test_a_withdrawn_request_cancels_its_function() -> None:
     said: list[str] = []
     answers: list[v1.Answer] = []

@@ -185,6 +185,30 @@ def test_a_robot_is_for_its_thread_and_its_process(robot: saphira.Robot) -> None
     assert next(robot.state()).stamp.cycle > 0
 
 
+def test_another_thread_closes_a_robot(robot: saphira.Robot) -> None:
+    other = saphira.connect("closed elsewhere")
+    goal = other.go("D")
+    until(lambda: goal.status is not None)
+    thread = threading.Timer(0.1, other.close)
+    thread.start()
+    with pytest.raises(RuntimeError, match="closed"):
+        goal.wait()
+    thread.join()
+    assert not other._bus.is_open()
+    assert status_of(robot, goal.id).code == v1.GoalCode.CODE_DISPOSED
+
+
+def test_a_handler_of_a_signal_closes_a_robot_in_its_wait(robot: saphira.Robot) -> None:
+    other = saphira.connect("closed by a signal")
+    goal = other.go("D")
+    before = signal.signal(signal.SIGALRM, lambda *_: other.close())
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    with pytest.raises(RuntimeError, match="closed"):
+        goal.wait()
+    signal.signal(signal.SIGALRM, before)
+    assert status_of(robot, goal.id).code == v1.GoalCode.CODE_DISPOSED
+
+
 def test_a_closed_robot_says_so(programs: None) -> None:
     robot = saphira.connect("closed")
     stream = robot.watch(topics.ROBOT_STATE)

@@ -16,6 +16,7 @@ constexpr int kRests = 10;  // cmd_vel of no motion before the silence
 constexpr int kMostTicks = 3 * sim::kTicksPerPacket;
 constexpr int kDeepest = 32;     // frames
 constexpr double kJump = 0.3;    // [m], beyond the way that the robot may have come
+constexpr double kTurned = 0.4;  // [rad] likewise
 constexpr double kRound = 0.01;  // [m] of a sensor's greatest range
 constexpr const char* kEmpty = "width 100000\nheight 100000\n";
 
@@ -133,9 +134,13 @@ bool Base::take(const Odometry& odometry, double now) {
   if (const std::string frame = plain_frame(odometry.child_frame_id); !frame.empty())
     frame_ = frame;
   // The client sees a jump, and begins anew. A heading of before means another direction now.
-  if (before && (body.pose.position() - body_.pose.position()).norm() >
-                    kJump + robot_.max_velocity * (now - *before))
-    server_.halt();
+  if (before) {
+    const double waited = now - *before;
+    const Pose way = relative(body_.pose, body.pose);
+    if (way.position().norm() > kJump + robot_.max_velocity * waited ||
+        std::abs(way.th) > kTurned + robot_.max_rotation_velocity * waited)
+      server_.halt();
+  }
   body_ = body;
   server_.measure(body_);
   return true;

@@ -212,7 +212,7 @@ class Play : public test::LinePlayer, private Client {
 };
 
 TEST(Base, IsAsWritten) {
-  EXPECT_EQ(test::play<Play>("agents/ros2/test/base.txt"), 9);
+  EXPECT_EQ(test::play<Play>("agents/ros2/test/base.txt"), 10);
 }
 
 TEST_F(BaseTest, NamesItselfAndReportsWhatTheTopicsSay) {

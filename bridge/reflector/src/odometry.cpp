@@ -33,6 +33,7 @@ void Odometry::begin(const RawPose& raw, std::uint64_t odom) {
 
 bool Odometry::update(const RawPose& raw, double dt, std::uint64_t fresh) {
   double allowed = 0.0;
+  double allowed_turn = 0.0;
   if (first_) {
     first_ = false;
     const bool power_up = raw.x == 0 && raw.y == 0 && raw.th == 0.0;
@@ -44,18 +45,17 @@ bool Odometry::update(const RawPose& raw, double dt, std::uint64_t fresh) {
     // Beyond half the range of the counters, the direction is ambiguous.
     allowed = std::min(settings_.near_distance + slack_.distance,
                        std::max(settings_.near_distance, 0.4 * kCounts * settings_.distance_unit));
-    if (std::abs(norm2_angle(raw.th - memory_.raw.th)) > settings_.near_angle + slack_.angle) {
-      begin(raw, fresh_);
-      return true;
-    }
+    allowed_turn = settings_.near_angle + slack_.angle;
     fresh = fresh_;
   } else {
     allowed = settings_.near_distance + 1.5 * settings_.max_velocity * dt;
+    allowed_turn = settings_.near_angle + 1.5 * settings_.max_rotation_velocity * dt;
   }
 
   const double dx = protocol::position_difference(memory_.raw.x, raw.x) * settings_.distance_unit;
   const double dy = protocol::position_difference(memory_.raw.y, raw.y) * settings_.distance_unit;
-  if (std::hypot(dx, dy) > allowed) {
+  if (std::hypot(dx, dy) > allowed ||
+      std::abs(norm2_angle(raw.th - memory_.raw.th)) > allowed_turn) {
     begin(raw, fresh);
     return true;
   }

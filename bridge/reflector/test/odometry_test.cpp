@@ -54,6 +54,17 @@ TEST(Odometry, UnwrapsTheRollOver) {
   EXPECT_GT(farthest, 10.0) << "it never left the first roll-over";
 }
 
+TEST(Odometry, BeginsAnewWhereTheHeadingJumps) {
+  Odometry odometry({.distance_unit = kUnit, .max_rotation_velocity = 1.0});
+  odometry.connect({}, 1);
+  odometry.update(raw_of({0.0, 0.0, 3.0}), 0.0, 2);
+  EXPECT_FALSE(odometry.update(raw_of({0.0, 0.0, -3.0}), 0.1, 2)) << "0.28 rad";
+  EXPECT_TRUE(odometry.update(raw_of({0.0, 0.0, -2.0}), 0.1, 2));
+  EXPECT_EQ(odometry.odom(), 2U);
+  EXPECT_EQ(odometry.pose_in_odom(), Pose{});
+  EXPECT_FALSE(odometry.update(raw_of({0.0, 0.0, -1.0}), 0.5, 3)) << "after a silence";
+}
+
 TEST(Odometry, GoesOnAfterAReconnectionNearby) {
   Odometry odometry(settings());
   odometry.connect({}, 1);

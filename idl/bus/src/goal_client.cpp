@@ -65,6 +65,12 @@ void GoalClient::cancel(const v1::GoalId& id, const std::string& why, const v1::
     own->second.over = Clock::now();
 }
 
+void GoalClient::leave() {
+  for (auto& [key, own] : own_)
+    if (!own.over && own.goal.writer_lost == v1::WRITER_LOST_CANCEL && writer_.dispose(own.goal))
+      own.over = Clock::now();
+}
+
 void GoalClient::poll() {
   for (const auto& sample : reader_.take()) {
     const Key key = key_of(sample.data.id);

@@ -44,6 +44,7 @@ class Odometry {
     double near_distance = 0.3;              ///< [m] nearer: the robot was not carried away
     double near_angle = 20.0 * kPi / 180.0;  ///< [rad]
     double max_velocity = 1.0;               ///< [m/s] a faster motion is a jump of the counters
+    double max_rotation_velocity = kPi;      ///< [rad/s] a faster turn is a jump of the heading
   };
 
   Odometry() = default;

@@ -46,6 +46,9 @@ class GoalClient {
   /// with `by`, the person who cancels.
   void cancel(const v1::GoalId& id, const std::string& why = {}, const v1::Person& by = {});
 
+  /// Withdraws all that this client asked for and that is not to be kept without its program.
+  void leave();
+
   /// Takes the samples of goals/status, and forgets goals that ended long ago. Call after each
   /// Node::wait.
   void poll();
