@@ -181,8 +181,6 @@ class Bus {
     requests_ = std::make_unique<Requests>(parts_->node);
   }
   ~Bus() { close(); }
-  Bus(const Bus&) = delete;
-  Bus& operator=(const Bus&) = delete;
 
   /// Leaves the bus, which ends the goals. In another thread or process than its own: nothing.
   void close() {

@@ -288,8 +288,6 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     bus_->add(*this);
   }
   ~DdsReader() override { bus_->remove(*this); }
-  DdsReader(const DdsReader&) = delete;
-  DdsReader& operator=(const DdsReader&) = delete;
 
   void open(Session& session, bool /*after_sleep*/) override {
     auto& part = part_of(session);

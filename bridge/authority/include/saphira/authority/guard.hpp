@@ -74,12 +74,6 @@ struct Guarded {
   /// The echo that is the reason, in the robot's frame; none: it is another one.
   std::optional<Vec2> obstacle = std::nullopt;
   bool sweep = false;  ///< the sonars have to cover more of the path, or the robot becomes slow
-
-  template <class Archive>
-  void archive(Archive& a) {
-    a("velocity", velocity)("rotation_velocity", rotation_velocity)("action", action)(
-        "reason", reason)("obstacle", obstacle)("sweep", sweep);
-  }
 };
 
 /// The greatest speed [m/s] from which the robot is down to `end` [m/s] after `distance` [m]. A
