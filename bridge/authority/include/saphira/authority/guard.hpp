@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::authority {
@@ -74,6 +75,8 @@ struct Guarded {
   /// The echo that is the reason, in the robot's frame; none: it is another one.
   std::optional<Vec2> obstacle = std::nullopt;
   bool sweep = false;  ///< the sonars have to cover more of the path, or the robot becomes slow
+
+  SAPHIRA_ARCHIVE(velocity, rotation_velocity, action, reason, obstacle, sweep)
 };
 
 /// The greatest speed [m/s] from which the robot is down to `end` [m/s] after `distance` [m]. A

@@ -117,6 +117,8 @@ class Cycle {
  public:
   explicit Cycle(Node& node);
   ~Cycle();
+  Cycle(const Cycle&) = delete;
+  Cycle& operator=(const Cycle&) = delete;
 
   /// Declares an input, before the first next(). Owned by the cycle.
   template <class T>

@@ -83,6 +83,8 @@ class Node {
   explicit Node(NodeOptions options);
   Node(NodeOptions options, std::shared_ptr<MemoryBus> memory);
   ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
 
   template <class T>
   Writer<T> writer(const Topic<T>& topic) {

@@ -10,6 +10,8 @@ class Stop {
  public:
   Stop();
   ~Stop();
+  Stop(const Stop&) = delete;
+  Stop& operator=(const Stop&) = delete;
 
   void request();
   bool requested() const { return requested_.load(std::memory_order_acquire); }

@@ -87,6 +87,8 @@ class CommandLine {
  public:
   explicit CommandLine(const std::string& description, const std::string& program = "");
   ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
 
   /// `names`: "--long,-s", or "word" for a value by its place.
   template <class T>
