@@ -153,29 +153,29 @@ class Conversation : public DialogueTest {
   std::string map_ = kMap;
   std::string grammar_ = read_file(test::source("config/grammars/flakey.grammar"));
   const std::map<std::string, std::function<std::string()>> facts_{
-      {"goals", [this] { return goals(); }},
-      {"functor", [this] { return last.goals.at(0).functor; }},
-      {"priority", [this] { return std::to_string(last.goals.at(0).priority); }},
-      {"lasting", [this] { return yes(last.goals.at(0).lasting); }},
-      {"canceled", [this] { return canceled(); }},
-      {"why", [this] { return last.why; }},
-      {"claims", [this] { return claims(last.claims); }},
-      {"all claims", [this] { return claims(dialogue.claims()); }},
-      {"source", [this] { return last.claims.at(0).source; }},
-      {"namings", [this] { return namings(); }},
-      {"answers", [this] { return std::to_string(last.said.at(0).answers.second); }},
-      {"end", [this] { return yes(last.said.at(0).end); }},
-      {"refused", [this] { return yes(last.said.at(0).refused); }},
-      {"note", [this] { return last.note; }},
-      {"changed", [this] { return yes(last.changed); }},
+      IS("goals", goals()),
+      IS("functor", last.goals.at(0).functor),
+      IS("priority", std::to_string(last.goals.at(0).priority)),
+      IS("lasting", yes(last.goals.at(0).lasting)),
+      IS("canceled", canceled()),
+      IS("why", last.why),
+      IS("claims", claims(last.claims)),
+      IS("all claims", claims(dialogue.claims())),
+      IS("source", last.claims.at(0).source),
+      IS("namings", namings()),
+      IS("answers", std::to_string(last.said.at(0).answers.second)),
+      IS("end", yes(last.said.at(0).end)),
+      IS("refused", yes(last.said.at(0).refused)),
+      IS("note", last.note),
+      IS("changed", yes(last.changed)),
       {"answer to the program",
        [this] {
          const Answer answer = dialogue.place_of("karen");
          return answer.code == AnswerCode::done ? describe(answer.results) : answer.text;
        }},
-      {"facts", [this] { return std::to_string(dialogue.knowledge().all().size()); }},
-      {"doorway", [this] { return std::to_string(dialogue.knowledge().all().at(0).artifact); }},
-      {"place of karen", [this] { return dialogue.knowledge().place_of("karen"); }}};
+      IS("facts", std::to_string(dialogue.knowledge().all().size())),
+      IS("doorway", std::to_string(dialogue.knowledge().all().at(0).artifact)),
+      IS("place of karen", dialogue.knowledge().place_of("karen"))};
   const std::map<std::string, std::function<void(const std::string&)>> changes_{
       {"done",
        [this](const auto& text) {
