@@ -30,8 +30,7 @@ struct WholeOptions {
 class Whole {
  public:
   explicit Whole(const WholeOptions& options);
-  Whole(const Whole&) = delete;
-  Whole& operator=(const Whole&) = delete;
+  Whole& operator=(Whole&&) = delete;
 
   void advance();
   /// Advances until `done`, for `cycles` at most; returns the result of `done`.

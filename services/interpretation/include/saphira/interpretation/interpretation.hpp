@@ -75,8 +75,7 @@ class Interpretation {
   /// tasks: the parts that work; without them, all. They outlive the interpretation, and their
   /// table is stepped before each step.
   explicit Interpretation(Settings settings, const Tasks* tasks = nullptr);
-  Interpretation(const Interpretation&) = delete;
-  Interpretation& operator=(const Interpretation&) = delete;
+  Interpretation& operator=(Interpretation&&) = delete;
 
   const Output& step(const Inputs& inputs);
   /// Forgets everything but the settings; ids are not used again.
