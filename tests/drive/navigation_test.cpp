@@ -477,37 +477,39 @@ class Errand : public LinePlayer {
 
   Errand() {
     course = {};
-    events_ = {
-      ON("world", world(in)),
-      ON("floor", in >> options_.drive.world; options_.map = rest(in)),
-      ON("robot", options_.drive.robot = rest(in)),
-      ON("start", options_.drive.start_in_world = pose_of(rest(in))),
-      ON("lost", options_.knows_pose = false),
-      ON("sees", sees(rest(in))),
-      ON("zone", options_ = office_with_zones(rest(in))),
-      ON("claim", claim(in)),
-      ON("answers", answers(rest(in))),
-      ON("ask", goal_ = ask(in)),
-      ON("also", ask(in)),
-      ON("cycles", advance(read<int>(in), [] { return false; })),
-      ON("ends", ends(in)),
-      ON("as-stored", as_stored(in)),
-      ON("until-said", until_said(in)),
-      ON("open", EXPECT_TRUE(scene().set_door(rest(in), true))),
-      ON("carry", EXPECT_TRUE(robot().place(pose_of(rest(in))))),
-      ON("is-in", EXPECT_TRUE(test::is_in(whole(), rest(in)))),
-      ON("near", near(in)),
-      ON("said-times", said_times(in)),
-      ON("believed", believed(rest(in)))
-    };
-    facts_ = {IS("contacts", std::to_string(whole().drive().contacts())),
-              IS("trouble", whole().trouble()),
-              IS("answered", yes(people_.all_answered())),
-              IS("said", std::to_string(whole().said().size())),
-              IS("first said", whole().said().at(0)),
-              IS("last said", whole().said().back()),
-              IS("at rest", yes(whole().at_rest())),
-              IS("asking", asking())};
+    events_ = {{"world", [this](auto& in) { world(in); }},
+               {"floor",
+                [this](auto& in) {
+                  in >> options_.drive.world;
+                  options_.map = rest(in);
+                }},
+               {"robot", [this](auto& in) { options_.drive.robot = rest(in); }},
+               {"start", [this](auto& in) { options_.drive.start_in_world = pose_of(rest(in)); }},
+               {"lost", [this](auto&) { options_.knows_pose = false; }},
+               {"sees", [this](auto& in) { sees(rest(in)); }},
+               {"zone", [this](auto& in) { options_ = office_with_zones(rest(in)); }},
+               {"claim", [this](auto& in) { claim(in); }},
+               {"answers", [this](auto& in) { answers(rest(in)); }},
+               {"ask", [this](auto& in) { goal_ = ask(in); }},
+               {"also", [this](auto& in) { ask(in); }},
+               {"cycles", [this](auto& in) { advance(read<int>(in), [] { return false; }); }},
+               {"ends", [this](auto& in) { ends(in); }},
+               {"as-stored", [this](auto& in) { as_stored(in); }},
+               {"until-said", [this](auto& in) { until_said(in); }},
+               {"open", [this](auto& in) { EXPECT_TRUE(scene().set_door(rest(in), true)); }},
+               {"carry", [this](auto& in) { EXPECT_TRUE(robot().place(pose_of(rest(in)))); }},
+               {"is-in", [this](auto& in) { EXPECT_TRUE(test::is_in(whole(), rest(in))); }},
+               {"near", [this](auto& in) { near(in); }},
+               {"said-times", [this](auto& in) { said_times(in); }},
+               {"believed", [this](auto& in) { believed(rest(in)); }}};
+    facts_ = {{"contacts", [this] { return std::to_string(whole().drive().contacts()); }},
+              {"trouble", [this] { return whole().trouble(); }},
+              {"answered", [this] { return yes(people_.all_answered()); }},
+              {"said", [this] { return std::to_string(whole().said().size()); }},
+              {"first said", [this] { return whole().said().at(0); }},
+              {"last said", [this] { return whole().said().back(); }},
+              {"at rest", [this] { return yes(whole().at_rest()); }},
+              {"asking", [this] { return asking(); }}};
   }
 
  private:
