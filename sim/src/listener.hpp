@@ -24,7 +24,6 @@ class Listener {
   ~Listener();
   Listener(Listener&&) = default;
   Listener& operator=(Listener&&) = delete;
-  Listener& operator=(Listener&&) = delete;
 
   int fd() const { return fd_; }
   const std::string& name() const { return name_; }
