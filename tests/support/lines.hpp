@@ -16,10 +16,10 @@
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 
-/// An entry of LinePlayer's events: its statements, with the rest of the line in `in`.
-#define ON(word, ...)                                                      \
-  {                                                                        \
-    word, [this]([[maybe_unused]] std::istringstream& in) { __VA_ARGS__; } \
+/// An entry of LinePlayer's events: its statements, with what follows the word in `in`.
+#define ON(word, ...)                                        \
+  {                                                          \
+    word, [this]([[maybe_unused]] auto& in) { __VA_ARGS__; } \
   }
 /// An entry of its facts or values.
 #define IS(name, ...)                    \
