@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
+#include "saphira/base/cycle.hpp"
+#include "saphira/base/format.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/idl/behavior.hpp"
 #include "saphira/idl/intention.hpp"
