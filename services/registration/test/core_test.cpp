@@ -18,6 +18,7 @@
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/idl/members.hpp"
 
 namespace saphira::registration {
 namespace {
@@ -193,7 +194,7 @@ class Hall : public test::LinePlayer {
                ON("has", EXPECT_TRUE(artifact(in))),
                ON("has-not", EXPECT_FALSE(artifact(in))),
                ON("has-at", EXPECT_TRUE(has_at(pose_of(rest(in)))))};
-    facts_ = {IS("state", std::string(word(now_.state))),
+    facts_ = {IS("state", lowered(std::string(v1::name_of(now_.state)).substr(13))),
               IS("environment", std::to_string(now_.environment)),
               IS("trust", trust()),
               IS("less sure", yes(now_.covariance(0, 0) > kept_variance_)),
@@ -290,18 +291,6 @@ class Hall : public test::LinePlayer {
   bool has_at(const Pose& pose) {
     return std::ranges::any_of(core().map().features,
                                [&](const auto& one) { return one.pose_in_map == pose; });
-  }
-  static const char* word(v1::RegistrationState state) {
-    switch (state) {
-      case v1::REGISTRATION_TRACKING:
-        return "tracking";
-      case v1::REGISTRATION_LOST:
-        return "lost";
-      case v1::REGISTRATION_OFF:
-        return "off";
-      default:
-        return "unplaced";
-    }
   }
   std::string trust() const {
     const double is = now_.confidence;
