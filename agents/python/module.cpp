@@ -191,8 +191,6 @@ class Bus {
     parts_ = unlocked([&] { return std::make_unique<Parts>(options); });
   }
   ~Bus() { close(); }
-  Bus(const Bus&) = delete;
-  Bus& operator=(const Bus&) = delete;
 
   /// Leaves the bus, which ends the goals: at once, or with the owner's call that is underway.
   void close() {

@@ -67,8 +67,7 @@ class Loop {
   Loop(void* owner, unsigned most, bool encrypts);
   /// Closes all connections: their callbacks still need the owner.
   ~Loop();
-  Loop(const Loop&) = delete;
-  Loop& operator=(const Loop&) = delete;
+  Loop& operator=(Loop&&) = delete;
 
   lws_context* context() const { return context_; }
   /// A vhost that listens at this place and nowhere else; null: it cannot. info: the rest.
@@ -95,8 +94,7 @@ class Loop {
   struct Timer {
     Timer(long period, std::function<void()> tick);
     ~Timer();
-    Timer(const Timer&) = delete;
-    Timer& operator=(const Timer&) = delete;
+    Timer& operator=(Timer&&) = delete;
 
     int fd;
     std::function<void()> tick;

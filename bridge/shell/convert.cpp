@@ -6,14 +6,11 @@
 #include "enums.hpp"
 #include "geometry/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
-#include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::bridge {
 
 namespace {
 
-constexpr auto kRoles = pairs_by_name<authority::Role, v1::Role>();
-constexpr auto kGuardActions = pairs_by_name<authority::GuardAction, v1::GuardAction>();
 // The bounds of the sequences.
 constexpr std::size_t kMostSonars = 64;
 constexpr std::size_t kMostRefusals = 16;
@@ -25,12 +22,6 @@ T short_of(unsigned value) {
   return static_cast<T>(std::min<unsigned>(value, std::numeric_limits<T>::max()));
 }
 
-template <class T>
-std::vector<T> first(std::vector<T> values, std::size_t count) {
-  values.resize(std::min(values.size(), count));
-  return values;
-}
-
 v1::SonarReading reading_of(const protocol::Sonar& sonar) {
   return {.sonar = sonar.number, .range = static_cast<float>(sonar.range), .echo = sonar.echo};
 }
@@ -40,30 +31,13 @@ v1::SonarReading reading_of(const protocol::Sonar& sonar) {
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets) {
   const protocol::Information& in = state.information;
-  v1::RobotState out{.stamp = stamp,
-                     .odom = state.odom,
-                     .pose_in_odom = saphira::to_bus(state.pose_in_odom),
-                     .velocity = in.velocity,
-                     .rotation_velocity = in.rotation_velocity,
-                     .left_velocity = in.left_velocity,
-                     .right_velocity = in.right_velocity,
-                     .target_velocity = state.target_velocity,
-                     .target_heading_in_odom = state.target_heading_in_odom,
-                     .status = kMotors.theirs(in.motors),
-                     .left_stalled = in.left_stalled,
-                     .right_stalled = in.right_stalled,
-                     .bumpers = in.bumpers,
-                     .battery = in.battery,
-                     .ptu = in.ptu,
-                     .head = in.head,
-                     .say = in.say,
-                     .timer = in.timer,
-                     .analog = in.analog,
-                     .digital_input = in.digital_input,
-                     .digital_output = in.digital_output,
-                     .sonars = converted(in.sonars, reading_of, kMostSonars),
-                     .motor_packets_per_s = short_of<std::uint16_t>(state.motor_packets_per_s),
-                     .sonar_readings_per_s = short_of<std::uint16_t>(state.sonar_readings_per_s)};
+  auto out = translated<v1::RobotState>(in);
+  take(out, state);
+  out.stamp = stamp;
+  out.status = kMotors.theirs(in.motors);
+  out.sonars = converted(in.sonars, reading_of, kMostSonars);
+  out.motor_packets_per_s = short_of<std::uint16_t>(state.motor_packets_per_s);
+  out.sonar_readings_per_s = short_of<std::uint16_t>(state.sonar_readings_per_s);
   out.vision_packets_per_s = 0;  // Shell counts them
   out.bad_packets = static_cast<std::uint32_t>(bad_packets);
   return out;
@@ -73,50 +47,30 @@ v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint
                         const v1::Stamp& stamp) {
   v1::SonarBuckets out{.stamp = stamp, .odom = odom};
   const auto each = [](const reflector::Bucket& bucket) {
-    return v1::SonarBucket{.reading = reading_of(bucket.reading),
-                           .cycle = bucket.cycle,
-                           .pose_in_odom = saphira::to_bus(bucket.pose_in_odom),
-                           .x = bucket.point.x(),
-                           .y = bucket.point.y()};
+    auto one = translated<v1::SonarBucket>(bucket);
+    one.reading = reading_of(bucket.reading);
+    one.x = bucket.point.x();
+    one.y = bucket.point.y();
+    return one;
   };
   out.buckets = converted(buckets, each, kMostSonars);
   return out;
 }
 
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet) {
-  return {.channels = converted(packet.channels, [](const protocol::VisionChannel& channel) {
-            return v1::VisionChannel{.mode = kVisionModes.theirs(channel.mode),
-                                     .x = channel.x,
-                                     .y = channel.y,
-                                     .area = channel.area,
-                                     .width = channel.width,
-                                     .height = channel.height,
-                                     .first = channel.first,
-                                     .count = channel.count};
-          })};
+  return translated<v1::VisionChannels>(packet);
 }
 
 v1::RobotDescription to_bus(const protocol::RobotParameters& p,
                             const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
                             const std::string& link, bool lockstep) {
-  v1::RobotDescription out{.stamp = stamp,
-                           .name = identity.name,
-                           .robot_class = identity.robot_class,
-                           .robot_subclass = identity.subclass,
-                           .parameter_file = p.file,
-                           .link = link,
-                           .radius = p.radius,
-                           .diagonal = p.diagonal,
-                           .max_velocity = p.max_velocity,
-                           .max_rotation_velocity = p.max_rotation_velocity,
-                           .acceleration = p.acceleration,
-                           .deceleration = p.deceleration,
-                           .rotation_acceleration = p.rotation_acceleration,
-                           .front_buffer = static_cast<std::uint16_t>(p.front_buffer),
-                           .side_buffer = static_cast<std::uint16_t>(p.side_buffer),
-                           .front_max_range = p.front_max_range,
-                           .head_reach = p.head_reach,
-                           .lockstep = lockstep};
+  auto out = translated<v1::RobotDescription>(p);
+  take(out, identity);
+  out.stamp = stamp;
+  out.robot_subclass = identity.subclass;
+  out.parameter_file = p.file;
+  out.link = link;
+  out.lockstep = lockstep;
   const auto sonar = [](const protocol::SonarUnit& unit) {
     return v1::SonarPose{.sonar = unit.number,
                          .pose_in_robot = saphira::to_bus(unit.pose_in_robot)};
@@ -128,32 +82,18 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
 v1::Grant to_bus(const authority::Grant& grant, const DriverSetpoints& told,
                  const authority::Guarded& guarded, const std::vector<authority::Refusal>& refused,
                  const v1::Stamp& stamp) {
-  v1::Grant out{
-      .stamp = stamp,
-      .role = kRoles.theirs(grant.role),
-      .source = grant.source,
-      .reason = grant.reason,
-      .expires_in = grant.expires_in,
-      .command_age = grant.command_age,
-      .guard = kGuardActions.theirs(guarded.action),
-      .guard_reason = guarded.reason,
-      .asked_velocity = told.setpoints.velocity,
-      .velocity = guarded.velocity,
-      .rotation = told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY,
-      .rotation_velocity = guarded.rotation_velocity,
-      .heading = told.setpoints.heading_in_odom,
-      .distance_left = told.distance_left,
-      .answers = grant.answers,
-      .number = grant.number,
-      .estopped = grant.estopped,
-      .estop_source = grant.estop_source,
-      .waits_for_hand_back = grant.waits_for_hand_back,
-      .stop = grant.stop,
-      .stop_source = grant.stop_source};
-  const auto refusal = [](const authority::Refusal& one) {
-    return v1::Refusal{.role = kRoles.theirs(one.role), .source = one.source, .reason = one.reason};
-  };
-  out.refused = converted(refused, refusal, kMostRefusals);
+  auto out = translated<v1::Grant>(grant);
+  out.stamp = stamp;
+  take(out.guard, guarded.action);
+  out.guard_reason = guarded.reason;
+  out.asked_velocity = told.setpoints.velocity;
+  out.velocity = guarded.velocity;
+  out.rotation = told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY;
+  out.rotation_velocity = guarded.rotation_velocity;
+  out.heading = told.setpoints.heading_in_odom;
+  out.distance_left = told.distance_left;
+  take(out.refused, refused);
+  shorten(out.refused, kMostRefusals);
   return out;
 }
 
@@ -168,20 +108,16 @@ std::string trouble(const v1::MotorCommand& command) {
 }
 
 reflector::Motion to_motion(const v1::MotorCommand& command) {
-  reflector::Motion out;
-  out.translation = kTranslations.ours(command.translation, reflector::Translation::none);
-  out.rotation = kRotations.ours(command.rotation, reflector::Rotation::none);
-  out.velocity = command.velocity;
-  out.distance = command.distance;
-  out.move = command.move;
-  out.rotation_velocity = command.rotation_velocity;
-  out.heading = command.heading;
-  return out;
+  return translated<reflector::Motion>(command);
 }
 
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer) {
-  DriveCommand out{{}, to_motion(command), command.contact_speed, {}, trouble(command)};
+  DriveCommand out{translated<authority::Command>(command),
+                   to_motion(command),
+                   command.contact_speed,
+                   {},
+                   trouble(command)};
   out.command.role = role;
   out.command.writer = writer;
   // Anybody may write any text, or none.
@@ -189,10 +125,6 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
       command.source.empty() ? "a program without a name" : command.source.substr(0, 255);
   out.command.epoch = command.stamp.epoch;
   out.command.cycle = command.stamp.cycle;
-  out.command.number = command.number;
-  out.command.active = command.active;
-  out.command.hand_back = command.hand_back;
-  out.command.heeds = command.heeds;
   for (const v1::Edge& edge : command.edges)
     out.edges.push_back({{edge.x1, edge.y1}, {edge.x2, edge.y2}});
   return out;
@@ -242,9 +174,12 @@ v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
   }
   if (const auto& io = reports.io) {
     out.has_io = true;
-    out.digital_inputs = first(io->digital_inputs, 16);
-    out.digital_outputs = first(io->digital_outputs, 16);
-    out.analog_inputs = first(io->analogs, 32);
+    out.digital_inputs = io->digital_inputs;
+    out.digital_outputs = io->digital_outputs;
+    out.analog_inputs = io->analogs;
+    shorten(out.digital_inputs, 16);
+    shorten(out.digital_outputs, 16);
+    shorten(out.analog_inputs, 32);
   }
   if (const auto& gripper = reports.gripper) {
     out.has_gripper = true;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "saphira/base/enum_pairs.hpp"
+#include "saphira/base/namesakes.hpp"
 #include "saphira/idl/motion.hpp"
 #include "saphira/idl/robot.hpp"
 #include "saphira/idl/vision.hpp"
@@ -18,12 +18,17 @@ inline constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{
     }},
     {},
     {v1::MOTORS_NOT_CONNECTED}};
-inline constexpr auto kTranslations = pairs_by_name<reflector::Translation, v1::TranslationMode>();
-inline constexpr auto kRotations = pairs_by_name<reflector::Rotation, v1::RotationMode>();
-inline constexpr EnumPairs<protocol::VisionChannel::Mode, v1::VisionMode, 3> kVisionModes{{{
-    {protocol::VisionChannel::Mode::kBlob, v1::VISION_BLOB},
-    {protocol::VisionChannel::Mode::kBlobWithBox, v1::VISION_BLOB_BOX},
-    {protocol::VisionChannel::Mode::kLine, v1::VISION_LINE},
-}}};
 
 }  // namespace saphira::bridge
+
+namespace saphira {
+
+using VisionMode = protocol::VisionChannel::Mode;
+template <>
+inline constexpr EnumPairs<VisionMode, v1::VisionMode, 3> kPairs<VisionMode, v1::VisionMode>{{{
+    {VisionMode::kBlob, v1::VISION_BLOB},
+    {VisionMode::kBlobWithBox, v1::VISION_BLOB_BOX},
+    {VisionMode::kLine, v1::VISION_LINE},
+}}};
+
+}  // namespace saphira

@@ -24,8 +24,6 @@ class Listener {
   ~Listener();
   Listener(Listener&&) = default;
   Listener& operator=(Listener&&) = delete;
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
 
   int fd() const { return fd_; }
   const std::string& name() const { return name_; }
@@ -48,8 +46,7 @@ class Terminal {
  public:
   explicit Terminal(std::string link);
   ~Terminal();
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
+  Terminal& operator=(Terminal&&) = delete;
 
   int fd() const { return master_; }
   /// The link, and its device.

@@ -26,98 +26,82 @@ class Client : public saphira::test::LinePlayer {
  public:
   Client() {
     events_ = {
-        {"robot",
-         [this](auto& in) {
-           const auto name = read<std::string>(in);
-           begin(
-               "width 20000 height 20000 0 0 20000 0 20000 0 20000 20000 20000 20000 0 "
-               "20000 0 20000 0 0",
-               name, rest(in));
-           open();
-         }},
-        {"office",
-         [this](auto& in) {
-           const std::string name = rest(in);
-           begin(read_file(test::source("config/worlds/office.wld")),
-                 name.empty() ? "pioneer" : name, "");
-         }},
-        {"colors",
-         [this](auto&) {
-           begin(
-               "width 20000 height 20000 position 10000 10000 0 "
-               "post can 12000 10000 100 color red tall 700 "
-               "post box 12000 10500 100 color green tall 700",
-               "pioneer", "");
-           open();
-         }},
-        {"open", [this](auto&) { open(); }},
-        {"SYNC", [this](auto& in) { server_->receive(protocol::encode_sync(read<int>(in))); }},
-        {"bytes", [this](auto& in) { bytes(in); }},
-        {"damaged",
-         [this](auto&) {
-           Bytes bad = protocol::encode(protocol::Velocity{0.3});
-           bad[5] ^= 1U;
-           server_->receive(bad);
-         }},
-        {"disconnect", [this](auto&) { server_->disconnect(); }},
-        {"ticks", [this](auto& in) { server_->advance(read<int>(in)); }},
-        {"seconds", [this](auto& in) { seconds(read<double>(in)); }},
-        {"forget",
-         [this](auto&) {
-           pump();
-           packets_.clear();
-         }},
-        {"inputs", [this](auto& in) { server_->devices().set_digital_input(byte(in)); }},
-        {"analog", [this](auto& in) {
-           const std::uint8_t value = byte(in);
-           server_->devices().set_analog(value, byte(in));
-         }}};
+      {"robot",
+       [this](auto& in) {
+         const auto name = read<std::string>(in);
+         begin(
+             "width 20000 height 20000 0 0 20000 0 20000 0 20000 20000 20000 20000 0 "
+             "20000 0 20000 0 0",
+             name, rest(in));
+         open();
+       }},
+      ON("office", const std::string name = rest(in);
+         begin(read_file(test::source("config/worlds/office.wld")), name.empty() ? "pioneer" : name,
+               "")),
+      ON("colors", begin("width 20000 height 20000 position 10000 10000 0 "
+                         "post can 12000 10000 100 color red tall 700 "
+                         "post box 12000 10500 100 color green tall 700",
+                         "pioneer", "");
+         open()),
+      ON("open", open()),
+      ON("SYNC", server_->receive(protocol::encode_sync(read<int>(in)))),
+      ON("bytes", bytes(in)),
+      {"damaged",
+       [this](auto&) {
+         Bytes bad = protocol::encode(protocol::Velocity{0.3});
+         bad[5] ^= 1U;
+         server_->receive(bad);
+       }},
+      ON("disconnect", server_->disconnect()),
+      ON("ticks", server_->advance(read<int>(in))),
+      ON("seconds", seconds(read<double>(in))),
+      ON("forget", pump(); packets_.clear()),
+      ON("inputs", server_->devices().set_digital_input(byte(in))),
+      ON("analog", const std::uint8_t value = byte(in);
+         server_->devices().set_analog(value, byte(in)))
+    };
     for (const protocol::CommandRule& rule : protocol::rules())
       events_[std::string(rule.name)] = [this, &rule](auto& in) { send(rule, in); };
-    facts_ = {
-        {"echoes", [this] { return echoes(); }},
-        {"open", [this] { return yes(server_->is_open()); }},
-        {"single step", [this] { return yes(server_->single_step()); }},
-        {"packets", [this] { return std::to_string(all<protocol::InformationPacket>().size()); }},
-        {"motors", [this] { return std::to_string(static_cast<int>(newest().motors)); }},
-        {"power", [this] { return yes(told_now().motors != protocol::Motors::kNoPower); }},
-        {"stopped", [this] { return yes(told_now().emergency_stop.value_or(false)); }},
-        {"battery", [this] { return format("%.1f", told_now().battery); }},
-        {"speed", [this] { return format("%.2f", told_now().velocity); }},
-        {"heading", [this] { return format("%.0f", degrees(told_now().th)); }},
-        {"control", [this] { return format("%.0f", degrees(told_now().control)); }},
-        {"gripper bits", [this] { return std::to_string(told_now().gripper_bits & 7U); }},
-        {"bumpers",
-         [this] { return format("%d %d", told_now().front_bumpers, told_now().rear_bumpers); }},
-        {"stalled", [this] { return yes(told_now().left_stalled); }},
-        {"arrays", [this] { return std::to_string((newest().ptu & protocol::kFlagSonars) >> 1U); }},
-        {"trailing", [this] { return yes(newest().trailing.flags3.has_value()); }},
-        {"way", [this] { return format("%.2f", newest().x * parameters_.distance_unit); }},
-        {"x", [this] { return std::to_string(newest().x); }},
-        {"output", [this] { return std::to_string(newest().digital_output); }},
-        {"servo", [this] { return std::to_string(newest().ptu); }},
-        {"sonars", [this] { return sonars(); }},
-        {"gripper", [this] { return gripper(); }},
-        {"gripper action",
-         [this] { return std::to_string(server_->devices().gripper().action()); }},
-        {"head", [this] { return format("%.0f", degrees(server_->devices().head())); }},
-        {"moves", [this] { return yes(server_->robot().moving()); }},
-        {"goes", [this] { return format("%.3f", server_->robot().velocity()); }},
-        {"turns", [this] { return format("%.0f", degrees(server_->robot().rotation_velocity())); }},
-        {"in odom", [this] { return told(server_->robot().pose_in_odom()); }},
-        {"in world", [this] { return told(server_->robot().pose_in_world()); }},
-        {"unknown", [this] { return std::to_string(server_->counters().unknown_commands); }},
-        {"unsupported",
-         [this] { return std::to_string(server_->counters().unsupported_commands); }},
-        {"bad", [this] { return std::to_string(server_->counters().bad_packets); }},
-        {"watchdog stops", [this] { return std::to_string(server_->counters().watchdog_stops); }},
-        {"rows", [this] { return rows(); }},
-        {"config", [this] { return config(); }},
-        {"encoders", [this] { return encoders(); }},
-        {"io", [this] { return io(); }},
-        {"batteries", [this] { return std::to_string(all<protocol::BatteryPacket>().size()); }},
-        {"status", [this] { return status(); }},
-        {"camera", [this] { return camera(); }}};
+    facts_ = {IS("echoes", echoes()),
+              IS("open", yes(server_->is_open())),
+              IS("single step", yes(server_->single_step())),
+              IS("packets", std::to_string(all<protocol::InformationPacket>().size())),
+              IS("motors", std::to_string(static_cast<int>(newest().motors))),
+              IS("power", yes(told_now().motors != protocol::Motors::kNoPower)),
+              IS("stopped", yes(told_now().emergency_stop.value_or(false))),
+              IS("battery", format("%.1f", told_now().battery)),
+              IS("speed", format("%.2f", told_now().velocity)),
+              IS("heading", format("%.0f", degrees(told_now().th))),
+              IS("control", format("%.0f", degrees(told_now().control))),
+              IS("gripper bits", std::to_string(told_now().gripper_bits & 7U)),
+              IS("bumpers", format("%d %d", told_now().front_bumpers, told_now().rear_bumpers)),
+              IS("stalled", yes(told_now().left_stalled)),
+              IS("arrays", std::to_string((newest().ptu & protocol::kFlagSonars) >> 1U)),
+              IS("trailing", yes(newest().trailing.flags3.has_value())),
+              IS("way", format("%.2f", newest().x * parameters_.distance_unit)),
+              IS("x", std::to_string(newest().x)),
+              IS("output", std::to_string(newest().digital_output)),
+              IS("servo", std::to_string(newest().ptu)),
+              IS("sonars", sonars()),
+              IS("gripper", gripper()),
+              IS("gripper action", std::to_string(server_->devices().gripper().action())),
+              IS("head", format("%.0f", degrees(server_->devices().head()))),
+              IS("moves", yes(server_->robot().moving())),
+              IS("goes", format("%.3f", server_->robot().velocity())),
+              IS("turns", format("%.0f", degrees(server_->robot().rotation_velocity()))),
+              IS("in odom", told(server_->robot().pose_in_odom())),
+              IS("in world", told(server_->robot().pose_in_world())),
+              IS("unknown", std::to_string(server_->counters().unknown_commands)),
+              IS("unsupported", std::to_string(server_->counters().unsupported_commands)),
+              IS("bad", std::to_string(server_->counters().bad_packets)),
+              IS("watchdog stops", std::to_string(server_->counters().watchdog_stops)),
+              IS("rows", rows()),
+              IS("config", config()),
+              IS("encoders", encoders()),
+              IS("io", io()),
+              IS("batteries", std::to_string(all<protocol::BatteryPacket>().size())),
+              IS("status", status()),
+              IS("camera", camera())};
   }
 
  private:

@@ -9,6 +9,7 @@
 #include "lines.hpp"
 #include "process.hpp"
 #include "saphira/sim/scene.hpp"
+#include "trouble.hpp"
 #include "world_scene.hpp"
 
 namespace saphira::sim {
@@ -90,13 +91,8 @@ TEST(Movable, OfASecondFileIsPutIntoTheWorldAndItsMistakesNameThatFile) {
   EXPECT_EQ(both.segments.size(), load_world(floor).segments.size());
   ASSERT_EQ(both.movable.persons.size(), 1U);
   std::ofstream(more) << "; in a wall\nperson ann 16500 12000\n";
-  try {
-    load_world(floor, more);
-    FAIL();
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.line(), 2);
-    EXPECT_NE(std::string(error.what()).find("more.wld"), std::string::npos) << error.what();
-  }
+  EXPECT_TRUE(
+      test::has(test::trouble_of<FileError>([&] { load_world(floor, more); }), "more.wld:2:"));
 }
 
 TEST(Movable, MistakesAreNamedWithTheirPlaceAndWhatWasExpected) {

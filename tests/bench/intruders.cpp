@@ -86,8 +86,7 @@ class Wire {
     close(heard_);
     close(sender_);
   }
-  Wire(const Wire&) = delete;
-  Wire& operator=(const Wire&) = delete;
+  Wire& operator=(Wire&&) = delete;
 
   /// False without the right to hear packets.
   bool hears() const { return hears_; }

@@ -56,8 +56,7 @@ class ScriptedRobot {
     close(listen_);
     unlink(path_.c_str());
   }
-  ScriptedRobot(const ScriptedRobot&) = delete;
-  ScriptedRobot& operator=(const ScriptedRobot&) = delete;
+  ScriptedRobot& operator=(ScriptedRobot&&) = delete;
 
   /// Answers the opening dialogue until the client has sent OPEN.
   void connect() {

@@ -28,8 +28,7 @@ class Line {
  public:
   /// `file`: a robot of config/robots, in the hall.
   explicit Line(const std::string& file);
-  Line(const Line&) = delete;
-  Line& operator=(const Line&) = delete;
+  Line& operator=(Line&&) = delete;
 
   void send(const Wire& bytes);
   /// Lets time pass [s] and collects received bytes.

@@ -24,7 +24,7 @@ constexpr Step kType{"services/common/lps/include/saphira/lps/artifact.hpp", "  
 constexpr Step kTraits{"services/common/maps/include/saphira/maps/artifact_traits.hpp",
                        "    {.type = lps::PointType::zone", "<ArtifactTraits, "};
 constexpr Step kOnBus{"idl/perception.idl", "ARTIFACT_ZONE", "", true};
-constexpr Step kPair{"services/common/lps/shell/convert.cpp", "    {PointType::zone",
+constexpr Step kPair{"services/common/lps/shell/convert.hpp", "    {lps::PointType::zone",
                      "v1::ArtifactType, "};
 
 /// The named files, in a folder before that of the sources.

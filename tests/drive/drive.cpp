@@ -60,8 +60,7 @@ struct Folder {
     std::error_code ignored;
     std::filesystem::remove_all(path, ignored);
   }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+  Folder& operator=(Folder&&) = delete;
 
   std::string path = std::filesystem::temp_directory_path() / "saphira-worlds-XXXXXX";
 };

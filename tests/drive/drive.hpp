@@ -76,8 +76,7 @@ class Drive {
   static constexpr std::uint64_t kOdom = 1795260425632;
 
   explicit Drive(const DriveOptions& options);
-  Drive(const Drive&) = delete;
-  Drive& operator=(const Drive&) = delete;
+  Drive& operator=(Drive&&) = delete;
 
   /// Moves the world by one cycle under the newest commands.
   const Seen& advance();

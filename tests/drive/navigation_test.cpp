@@ -163,29 +163,26 @@ TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {
   bool passed = false;
   bool driving = false;
   int idle = 0;
-  whole.advance_until(
-      [&] {
-        bool follows = false;
-        bool passes = false;
-        for (const auto& node : whole.intentions().nodes) {
-          follows = follows || node.schema == "FollowCorridor";
-          passes = passes || node.schema == "FollowDoor";
-        }
-        both = both || (follows && passes);
-        if (passes)
-          slowest = std::min(slowest, whole.drive().seen().velocity);
-        passed = passed || passes;
-        bool drives = false;
-        bool stops = false;
-        for (const auto& each : whole.intentions().behaviors) {
-          drives = drives || each.schema == "FollowCorridor" || each.schema == "FollowDoor";
-          stops = stops || (each.schema == "Stop" && each.priority == 0);
-        }
-        idle += driving && !drives && !stops && !whole.ended(goal);
-        driving = driving || drives;
-        return whole.ended(goal);
-      },
-      3000);
+  whole.watch(goal, 3000, [&] {
+    bool follows = false;
+    bool passes = false;
+    for (const auto& node : whole.intentions().nodes) {
+      follows = follows || node.schema == "FollowCorridor";
+      passes = passes || node.schema == "FollowDoor";
+    }
+    both = both || (follows && passes);
+    if (passes)
+      slowest = std::min(slowest, whole.drive().seen().velocity);
+    passed = passed || passes;
+    bool drives = false;
+    bool stops = false;
+    for (const auto& each : whole.intentions().behaviors) {
+      drives = drives || each.schema == "FollowCorridor" || each.schema == "FollowDoor";
+      stops = stops || (each.schema == "Stop" && each.priority == 0);
+    }
+    idle += driving && !drives && !stops && !whole.ended(goal);
+    driving = driving || drives;
+  });
   EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-231"));
   EXPECT_TRUE(passed);
@@ -200,12 +197,7 @@ TEST(Navigation, ItSaysHowFarItHasCome) {
   Whole whole(office());
   const auto goal = whole.ask("go-to-place", {saphira::number("place", 249.0)});
   std::vector<double> levels;
-  whole.advance_until(
-      [&] {
-        levels.push_back(whole.status(goal).level);
-        return whole.ended(goal);
-      },
-      2000);
+  whole.watch(goal, 2000, [&] { levels.push_back(whole.status(goal).level); });
   EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-249")) << "by its number, as a person types it";
   EXPECT_LT(levels[20], 0.2);
@@ -279,12 +271,9 @@ TEST(Navigation, ADoorThatWasPassedClosedIsAvoidedAndTakenAgainWhenItIsOpen) {
   // Past it to the farther door, without a second look.
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-271")});
   double nearest = 10.0;  // to it, from the corridor's middle
-  whole.advance_until(
-      [&] {
-        nearest = std::min(nearest, (whole.truth().position() - Vec2(29.05, 6.0)).norm());
-        return whole.ended(goal);
-      },
-      3000);
+  whole.watch(goal, 3000, [&] {
+    nearest = std::min(nearest, (whole.truth().position() - Vec2(29.05, 6.0)).norm());
+  });
   EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_TRUE(is_in(whole, "EJ-271"));
   EXPECT_GT(nearest, 0.7);
@@ -324,12 +313,7 @@ TEST(Zones, AKeepOutThatIsToldOnTheLastLegIsObeyed) {
     ASSERT_FALSE(is_in(whole, "EJ-231"));
     whole.claim("hazards", "keep-out at EJ-231");
     bool inside = false;
-    EXPECT_TRUE(whole.advance_until(
-        [&] {
-          inside = inside || is_in(whole, "EJ-231");
-          return whole.ended(goal);
-        },
-        100));
+    EXPECT_TRUE(whole.watch(goal, 100, [&] { inside = inside || is_in(whole, "EJ-231"); }));
     EXPECT_EQ(whole.status(goal).state, v1::GOAL_FAILED);
     EXPECT_EQ(whole.status(goal).reason,
               "room 231 (EJ-231) is in a place that people told me to keep out of");
@@ -345,20 +329,17 @@ TEST(Zones, ASlowZoneCapsTheSpeed) {
   double fastest = 0.0;
   double outside = 0.0;
   std::string reason;
-  whole.advance_until(
-      [&] {
-        const Vec2 at = whole.truth().position();
-        const double velocity = whole.drive().seen().velocity;
-        // The robot brakes behind the edge.
-        if (at.y() < 12.1 && at.y() > 9.7) {
-          fastest = std::max(fastest, velocity);
-          reason = whole.intentions().limit_reason;
-        } else {
-          outside = std::max(outside, velocity);
-        }
-        return whole.ended(goal);
-      },
-      3000);
+  whole.watch(goal, 3000, [&] {
+    const Vec2 at = whole.truth().position();
+    const double velocity = whole.drive().seen().velocity;
+    // The robot brakes behind the edge.
+    if (at.y() < 12.1 && at.y() > 9.7) {
+      fastest = std::max(fastest, velocity);
+      reason = whole.intentions().limit_reason;
+    } else {
+      outside = std::max(outside, velocity);
+    }
+  });
   EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_GT(fastest, 0.05);
   EXPECT_LT(fastest, 0.12);
@@ -371,13 +352,10 @@ TEST(Zones, OneWayForcesTheWayAround) {
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-265")});
   bool entered = false;
   bool east = false;
-  whole.advance_until(
-      [&] {
-        entered = entered || maps::contains(zone_of(whole), whole.truth().position());
-        east = east || is_in(whole, "upper corridor");
-        return whole.ended(goal);
-      },
-      6000);
+  whole.watch(goal, 6000, [&] {
+    entered = entered || maps::contains(zone_of(whole), whole.truth().position());
+    east = east || is_in(whole, "upper corridor");
+  });
   EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_FALSE(entered);
   EXPECT_TRUE(east);
@@ -395,12 +373,9 @@ TEST(Zones, NoGoalEntersAKeepOut) {
     Whole whole(office_with_zones(zone));
     const auto goal = whole.ask(functor, arguments);
     bool entered = false;
-    whole.advance_until(
-        [&] {
-          entered = entered || maps::contains(zone_of(whole), whole.truth().position());
-          return whole.ended(goal);
-        },
-        600);
+    whole.watch(goal, 600, [&] {
+      entered = entered || maps::contains(zone_of(whole), whole.truth().position());
+    });
     EXPECT_EQ(whole.status(goal).state, v1::GOAL_FAILED) << functor;
     EXPECT_EQ(whole.status(goal).reason, "it must not go on: keep-out zone \"lab\"") << functor;
     EXPECT_FALSE(entered) << functor;

@@ -136,15 +136,12 @@ TEST(VisionEyes, AHeadFindsAPersonBehindTheRobotAndStaysOnThem) {
       << "the head turned, the robot did not";
   int cycles = 0;
   double worst = 0.0;
-  whole.advance_until(
-      [&] {
-        const Vec2 ann = to_frame(whole.truth(), {17.5, 10.5});
-        const double off = std::atan2(ann.y(), ann.x()) - whole.drive().seen().head;
-        if (++cycles > 15 && !whole.ended(goal))
-          worst = std::max(worst, std::abs(norm2_angle(off)));
-        return whole.ended(goal);
-      },
-      600);
+  whole.watch(goal, 600, [&] {
+    const Vec2 ann = to_frame(whole.truth(), {17.5, 10.5});
+    const double off = std::atan2(ann.y(), ann.x()) - whole.drive().seen().head;
+    if (++cycles > 15 && !whole.ended(goal))
+      worst = std::max(worst, std::abs(norm2_angle(off)));
+  });
   EXPECT_EQ(whole.status(goal).state, v1::GOAL_SUCCEEDED) << whole.status(goal).reason;
   EXPECT_LT(degrees(worst), 15.0) << "of 30 degrees to the edge of the picture";
   EXPECT_NEAR((Vec2(17.5, 10.5) - whole.truth().position()).norm(), 1.0, 0.4);

@@ -57,6 +57,10 @@ bool Whole::advance_until(const std::function<bool()>& done, int cycles) {
   return done();
 }
 
+bool Whole::watch(const v1::GoalId& goal, int cycles, const std::function<void()>& each) {
+  return advance_until([&] { return each(), ended(goal); }, cycles);
+}
+
 v1::GoalId Whole::ask(std::string functor, const Arguments& arguments, int priority,
                       double deadline) {
   const v1::GoalId id{1, next_goal_++};

@@ -30,12 +30,13 @@ struct WholeOptions {
 class Whole {
  public:
   explicit Whole(const WholeOptions& options);
-  Whole(const Whole&) = delete;
-  Whole& operator=(const Whole&) = delete;
+  Whole& operator=(Whole&&) = delete;
 
   void advance();
   /// Advances until `done`, for `cycles` at most; returns the result of `done`.
   bool advance_until(const std::function<bool()>& done, int cycles);
+  /// Until the goal has ended; `each` looks at every cycle.
+  bool watch(const v1::GoalId& goal, int cycles, const std::function<void()>& each);
 
   /// Asks for a goal, which is taken in the next cycle.
   v1::GoalId ask(std::string functor, const Arguments& arguments = {}, int priority = 0,

@@ -63,7 +63,7 @@ void saphira::fuzz::run(std::string_view content) {
     return all;
   }();
   static const Registry kBuiltIn = built_in();
-  const Loaded loaded = load_text("fuzz.act", content, kFunctions, kBuiltIn);
+  const Loaded loaded = load_activities({{"fuzz.act", std::string(content)}}, kFunctions, kBuiltIn);
   for (const Diagnostic& trouble : loaded.troubles) {
     require(trouble.line >= 1 && trouble.column >= 1 && !trouble.message.empty());
     static_cast<void>(trouble.text());

@@ -45,8 +45,6 @@ class Scripted {
     stop_.request();
     thread_.join();
   }
-  Scripted(const Scripted&) = delete;
-  Scripted& operator=(const Scripted&) = delete;
 
   const bus::NodeOptions& options() const { return options_; }
   std::vector<v1::MotorCommand> teleop() {

@@ -16,6 +16,17 @@
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 
+/// An entry of LinePlayer's events: its statements, with what follows the word in `in`.
+#define ON(word, ...)                                        \
+  {                                                          \
+    word, [this]([[maybe_unused]] auto& in) { __VA_ARGS__; } \
+  }
+/// An entry of its facts or values.
+#define IS(name, ...)                    \
+  {                                      \
+    name, [this] { return __VA_ARGS__; } \
+  }
+
 namespace saphira::test {
 
 /// Gives each line of a file of the source tree to `use`, without empty lines and comments. A

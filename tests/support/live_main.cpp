@@ -62,8 +62,6 @@ class StallWatch {
     ended_ = true;
     thread_.join();
   }
-  StallWatch(const StallWatch&) = delete;
-  StallWatch& operator=(const StallWatch&) = delete;
 
   Seconds longest() const { return Seconds(longest_.load()); }
   double stolen_share() const {

@@ -18,8 +18,6 @@ class SerialLine {
   /// `device`: the path of the pseudo-terminal, a symbolic link. `baud` 0: not paced.
   SerialLine(std::string device, std::string robot_socket, int baud = 9600);
   ~SerialLine();
-  SerialLine(const SerialLine&) = delete;
-  SerialLine& operator=(const SerialLine&) = delete;
 
   /// True where the robot is switched on. Bytes sent before that are lost, perhaps half a packet.
   bool has_robot();

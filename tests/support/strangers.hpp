@@ -13,8 +13,7 @@ class Strangers {
   /// Waits until a program of the domain announces itself; std::runtime_error where none does.
   explicit Strangers(unsigned domain);
   ~Strangers();
-  Strangers(const Strangers&) = delete;
-  Strangers& operator=(const Strangers&) = delete;
+  Strangers& operator=(Strangers&&) = delete;
 
   /// Announces so many, at so many a second. `programs`: these again and again [0: each is another
   /// one].

@@ -53,8 +53,7 @@ struct Device {
     if (fd >= 0)
       v4l2_close(fd);
   }
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
+  Device& operator=(Device&&) = delete;
 
   const int fd;
 };

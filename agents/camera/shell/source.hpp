@@ -11,10 +11,8 @@ namespace saphira::camera {
 /// An opened camera. It is closed with its object.
 class Source {
  public:
-  Source() = default;
   virtual ~Source() = default;
-  Source(const Source&) = delete;
-  Source& operator=(const Source&) = delete;
+  Source& operator=(Source&&) = delete;
 
   /// Readable where frames are there.
   virtual int fd() const = 0;

@@ -238,8 +238,7 @@ class Screen {
       print("\x1b[?1049h\x1b[?25l");
   }
   ~Screen() { leave(); }
-  Screen(const Screen&) = delete;
-  Screen& operator=(const Screen&) = delete;
+  Screen& operator=(Screen&&) = delete;
 
   bool on() const { return on_; }
   void leave() {

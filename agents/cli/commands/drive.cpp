@@ -74,8 +74,7 @@ class RawTerminal {
     tcsetattr(STDIN_FILENO, TCSANOW, &before_);
     print("\x1b[?25h\n");
   }
-  RawTerminal(const RawTerminal&) = delete;
-  RawTerminal& operator=(const RawTerminal&) = delete;
+  RawTerminal& operator=(RawTerminal&&) = delete;
 
  private:
   static void restore_and_raise(int number) {

@@ -18,8 +18,7 @@ class RunFolder {
   /// robot, domain: of its deployment, for running_deployments.
   RunFolder(const std::string& name, const std::string& robot, unsigned domain);
   ~RunFolder();
-  RunFolder(const RunFolder&) = delete;
-  RunFolder& operator=(const RunFolder&) = delete;
+  RunFolder& operator=(RunFolder&&) = delete;
 
   const std::string& path() const { return path_; }
   /// Tells running_deployments of it: where the disk has no room for that, by a file in memory.
@@ -62,8 +61,7 @@ class FoundBus {
  public:
   explicit FoundBus(const RunningBus& bus);
   ~FoundBus();
-  FoundBus(const FoundBus&) = delete;
-  FoundBus& operator=(const FoundBus&) = delete;
+  FoundBus& operator=(FoundBus&&) = delete;
 
  private:
   void end();
@@ -86,8 +84,7 @@ class ProgramLocks {
  public:
   ProgramLocks() = default;
   ~ProgramLocks();
-  ProgramLocks(const ProgramLocks&) = delete;
-  ProgramLocks& operator=(const ProgramLocks&) = delete;
+  ProgramLocks& operator=(ProgramLocks&&) = delete;
 
   /// holder: name of this deployment, for a second one. std::runtime_error with the holder when the
   /// program of that robot and domain is held.

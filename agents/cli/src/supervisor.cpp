@@ -76,8 +76,7 @@ class Pipe {
       if (end >= 0)
         close(end);
   }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
+  Pipe& operator=(Pipe&&) = delete;
 
   int out() const { return ends_[1]; }
   int take_in() { return std::exchange(ends_[0], -1); }

@@ -217,8 +217,7 @@ class NoMoreFiles {
     setrlimit(RLIMIT_NOFILE, &few);
   }
   ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
-  NoMoreFiles(const NoMoreFiles&) = delete;
-  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(NoMoreFiles&&) = delete;
 
  private:
   rlimit before_{};

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "saphira/base/text.hpp"
+#include "trouble.hpp"
 
 namespace saphira::cli {
 namespace {
@@ -83,13 +84,10 @@ TEST(Trace, WhatIsNoTraceIsRefusedWithItsPlace) {
                                 "1,1,1,1,1,1,1,1,1,1,\n", "\n"}) {
     std::string text = kHeader + kFirst;
     text += bad;
-    try {
-      evaluate_trace(text, 9, "t.csv");
-      FAIL() << bad;
-    } catch (const FileError& error) {
-      EXPECT_EQ(error.line(), 3);
-      EXPECT_EQ(error.file(), "t.csv");
-    }
+    EXPECT_TRUE(test::trouble_of<FileError>([&] {
+                  evaluate_trace(text, 9, "t.csv");
+                }).starts_with("t.csv:3:"))
+        << bad;
   }
 }
 

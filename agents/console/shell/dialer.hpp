@@ -24,8 +24,6 @@ class Dialer {
   Dialer(DialOptions options, std::function<void(int port)> reached,
          std::function<void(const std::string& why)> lost);
   ~Dialer();
-  Dialer(const Dialer&) = delete;
-  Dialer& operator=(const Dialer&) = delete;
 
  private:
   struct Impl;

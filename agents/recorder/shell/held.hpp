@@ -16,8 +16,6 @@ class Held {
   Held(const std::string& file, bool overwrite);
   /// A new recording that has not taken its place is removed.
   ~Held();
-  Held(const Held&) = delete;
-  Held& operator=(const Held&) = delete;
 
   std::ostream& out() { return out_; }
   /// The written part takes its place, once. std::runtime_error where it cannot.

@@ -25,8 +25,6 @@ class Relay {
   /// std::runtime_error that names the cause (no port, no certificate).
   Relay(const RelayOptions& options, std::vector<Robot> robots);
   ~Relay();
-  Relay(const Relay&) = delete;
-  Relay& operator=(const Relay&) = delete;
 
   /// Runs until `stop` is readable.
   void run(int stop);

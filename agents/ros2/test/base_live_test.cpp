@@ -49,8 +49,6 @@ class FakeBase {
     ends_ = true;
     thread_.join();
   }
-  FakeBase(const FakeBase&) = delete;
-  FakeBase& operator=(const FakeBase&) = delete;
 
   std::atomic<bool> has_scan{true};
   std::atomic<double> x{0.0};

@@ -173,41 +173,33 @@ class Play : public test::LinePlayer, private Client {
  public:
   Play() {
     const auto says = [this](auto command) { return [=, this](auto&) { say(command); }; };
-    events_ = {{"open", [this](auto&) { open(); }},
-               {"velocity", [this](auto& in) { say(protocol::Velocity{read<double>(in)}); }},
-               {"rotation",
-                [this](auto& in) { say(protocol::RotationVelocity{radians(read<double>(in))}); }},
-               {"heading", [this](auto& in) { say(protocol::Heading{radians(read<double>(in))}); }},
-               {"emergency", says(protocol::EmergencyStop{})},
-               {"close", says(protocol::Close{})},
-               {"origin", says(protocol::SetOrigin{})},
-               {"disconnect", [this](auto&) { base.disconnect(); }},
-               {"run", [this](auto& in) { run(read<double>(in)); }},
-               {"pose",
-                [this](auto& in) {
-                  pose.x = read<double>(in);
-                  pose.y = read<double>(in);
-                  pose.th = radians(read<double>(in));
-                }},
-               {"odometry", [this](auto& in) { has_odometry = rest(in) == "on"; }},
-               {"scan", [this](auto& in) { has_scan = rest(in) == "on"; }},
-               {"stamped-scan",
-                [this](auto&) {
-                  scan.header.stamp = {5, 0};
-                  topics();
-                }},
-               {"mark", [this](auto&) {
-                  written = packets = 0;
-                  fastest = 0.0;
-                }}};
-    facts_ = {
-        {"cmd",
-         [this] { return format("%.3g %.3g", cmd_vel.linear.x, degrees(cmd_vel.angular.z)); }},
-        {"fastest", [this] { return format("%.3g", fastest); }},
-        {"written", [this] { return std::to_string(written); }},
-        {"heard", [this] { return yes(packets > 0); }},
-        {"place", [this] { return format("%d %d", newest.x, newest.y); }},
-        {"trouble", [this] { return base.trouble(now); }}};
+    events_ = {
+      ON("open", open()),
+      ON("velocity", say(protocol::Velocity{read<double>(in)})),
+      ON("rotation", say(protocol::RotationVelocity{radians(read<double>(in))})),
+      ON("heading", say(protocol::Heading{radians(read<double>(in))})),
+      {"emergency", says(protocol::EmergencyStop{})},
+      {"close", says(protocol::Close{})},
+      {"origin", says(protocol::SetOrigin{})},
+      ON("disconnect", base.disconnect()),
+      ON("run", run(read<double>(in))),
+      {"pose",
+       [this](auto& in) {
+         pose.x = read<double>(in);
+         pose.y = read<double>(in);
+         pose.th = radians(read<double>(in));
+       }},
+      ON("odometry", has_odometry = rest(in) == "on"),
+      ON("scan", has_scan = rest(in) == "on"),
+      ON("stamped-scan", scan.header.stamp = {5, 0}; topics()),
+      ON("mark", written = packets = 0; fastest = 0.0)
+    };
+    facts_ = {IS("cmd", format("%.3g %.3g", cmd_vel.linear.x, degrees(cmd_vel.angular.z))),
+              IS("fastest", format("%.3g", fastest)),
+              IS("written", std::to_string(written)),
+              IS("heard", yes(packets > 0)),
+              IS("place", format("%d %d", newest.x, newest.y)),
+              IS("trouble", base.trouble(now))};
   }
 };
 

@@ -28,8 +28,7 @@ class Client {
     EXPECT_GT(participant_, 0);
   }
   ~Client() { dds_delete(participant_); }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
+  Client& operator=(Client&&) = delete;
 
   dds_entity_t reader(const std::string& name, const dds_topic_descriptor_t& type,
                       bool latched = false) const {

@@ -48,82 +48,38 @@ v1::IntentionState intention_state(int state) {
 }  // namespace
 
 protocol::RobotParameters parameters_of(const v1::RobotDescription& robot) {
-  protocol::RobotParameters parameters;
+  auto parameters = translated<protocol::RobotParameters>(robot);
   parameters.file = robot.parameter_file;
-  parameters.name = robot.name;
-  parameters.robot_class = robot.robot_class;
   parameters.subclass = robot.robot_subclass;
-  parameters.radius = robot.radius;
-  parameters.diagonal = robot.diagonal;
-  parameters.max_velocity = robot.max_velocity;
-  parameters.max_rotation_velocity = robot.max_rotation_velocity;
-  parameters.acceleration = robot.acceleration;
-  parameters.deceleration = robot.deceleration;
-  parameters.rotation_acceleration = robot.rotation_acceleration;
-  parameters.front_buffer = robot.front_buffer;
-  parameters.side_buffer = robot.side_buffer;
-  parameters.front_max_range = robot.front_max_range;
+  parameters.sonars.clear();
   for (const lps::SonarMount& mount : lps::mounts_from_bus(robot))
     parameters.sonars.push_back({static_cast<std::uint8_t>(mount.sonar), mount.in_robot});
   return parameters;
 }
 
 reflector::State state_of(const v1::RobotState& robot) {
-  reflector::State state;
+  auto state = translated<reflector::State>(robot);
   state.cycle = robot.stamp.cycle;
-  state.odom = robot.odom;
-  state.pose_in_odom = from_bus(robot.pose_in_odom);
-  state.target_velocity = robot.target_velocity;
-  state.target_heading_in_odom = robot.target_heading_in_odom;
-  state.motor_packets_per_s = robot.motor_packets_per_s;
-  state.sonar_readings_per_s = robot.sonar_readings_per_s;
   protocol::Information& now = state.information;
+  take(now, robot);
   now.motors = bridge::kMotors.ours(robot.status, protocol::Motors::kStopped);
   now.th = state.pose_in_odom.th;
-  now.velocity = robot.velocity;
-  now.rotation_velocity = robot.rotation_velocity;
-  now.left_velocity = robot.left_velocity;
-  now.right_velocity = robot.right_velocity;
-  now.battery = robot.battery;
-  now.left_stalled = robot.left_stalled;
-  now.right_stalled = robot.right_stalled;
-  now.bumpers = robot.bumpers;
-  now.ptu = robot.ptu;
-  now.say = robot.say;
-  now.timer = robot.timer;
-  now.analog = robot.analog;
-  now.digital_input = robot.digital_input;
-  now.digital_output = robot.digital_output;
+  now.sonars.clear();
   for (const v1::SonarReading& sonar : robot.sonars)
     now.sonars.push_back({sonar.sonar, static_cast<double>(sonar.range), sonar.echo});
   return state;
 }
 
 v1::MotorCommand command_of(const reflector::Motion& motion) {
-  return {.active = true,
-          .translation = bridge::kTranslations.theirs(motion.translation),
-          .velocity = motion.velocity,
-          .distance = motion.distance,
-          .move = motion.move,
-          .rotation = bridge::kRotations.theirs(motion.rotation),
-          .rotation_velocity = motion.rotation_velocity,
-          .heading = motion.heading};
+  auto command = translated<v1::MotorCommand>(motion);
+  command.active = true;
+  return command;
 }
 
 protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
   protocol::VisionPacket seen;
-  for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels.size()); ++i) {
-    const v1::VisionChannel& from = channels.channels[i];
-    protocol::VisionChannel& to = seen.channels[i];
-    to.mode = bridge::kVisionModes.ours(from.mode, protocol::VisionChannel::Mode::kBlob);
-    to.x = from.x;
-    to.y = from.y;
-    to.area = from.area;
-    to.height = from.height;
-    to.width = from.width;
-    to.first = from.first;
-    to.count = from.count;
-  }
+  for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels.size()); ++i)
+    take(seen.channels[i], channels.channels[i]);
   return seen;
 }
 

@@ -3,10 +3,13 @@
 #include <cctype>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "process.hpp"
 #include "sample.hpp"
+#include "saphira/base/members.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/geometry/pose.hpp"
 
@@ -60,37 +63,16 @@ void read(const Json& json, T& value) {
 Situation situation_of(const Json& json) {
   Situation s;
   std::size_t known = 0;
-  const auto member = [&](const char* name, auto& value) {
-    known += json.contains(name) ? 1U : 0U;
-    if (json.contains(name) && !json[name].is_null())
-      read(json[name], value);
-  };
-  member("cycle", s.cycle);
-  member("now", s.now);
-  member("past", s.past);
-  member("silence", s.silence);
-  member("listened", s.listened);
-  member("pace", s.pace);
-  member("robot", s.robot);
-  member("grant", s.grant);
-  member("behaviors", s.behaviors);
-  member("intentions", s.intentions);
-  member("own_mind", s.own_mind);
-  member("behaviors_known", s.behaviors_known);
-  member("intentions_known", s.intentions_known);
-  member("goals", s.goals);
-  member("statuses", s.statuses);
-  member("statuses_known", s.statuses_known);
-  member("registration", s.registration);
-  member("doubtful_since", s.doubtful_since);
-  member("estopped_since", s.estopped_since);
-  member("stalled_since", s.stalled_since);
-  member("behaviors_drove", s.behaviors_drove);
-  member("beliefs", s.beliefs);
-  member("schemas", s.schemas);
-  member("programs", s.programs);
-  member("found", s.found);
-  member("processes", s.processes);
+  const auto members = members_of(s);
+  [&]<std::size_t... i>(std::index_sequence<i...> /*all*/) {
+    const auto member = [&](const std::string& name, auto& value) {
+      known += json.contains(name) ? 1U : 0U;
+      if (json.contains(name) && !json[name].is_null())
+        read(json[name], value);
+    };
+    (member(std::string(kMemberName<Situation, i>), std::get<i>(members)), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<decltype(members)>>());
   if (known < json.size())
     throw std::invalid_argument("a situation has no such member");
   // In the past, goals are known by the record of intentions.

@@ -7,6 +7,7 @@
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
+#include "trouble.hpp"
 
 namespace saphira::situation::test {
 namespace {
@@ -37,12 +38,7 @@ TEST(Situations, EachAnswerSaysWhatItMustAndNothingFalse) {
 
 TEST(Situations, AWrongLineIsNamed) {
   const auto trouble = [](const std::string& text) {
-    try {
-      read_cases(text, "f");
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return saphira::test::trouble_of<std::invalid_argument>([&] { read_cases(text, "f"); });
   };
   EXPECT_EQ(trouble("situation a\nis driving\nask why\nmust drive\n"), "");
   EXPECT_TRUE(trouble("situation a\nis flying\n").starts_with("f:2: "));

@@ -28,8 +28,6 @@ class Microphone {
   /// A failed device is tried again. UnusableFile for a file without sound.
   Microphone(std::string source, std::function<void(const std::string&)> trouble);
   ~Microphone();
-  Microphone(const Microphone&) = delete;
-  Microphone& operator=(const Microphone&) = delete;
 
   Sound take();
   /// True at the end of a file, with an empty queue.
@@ -62,8 +60,6 @@ class Speaker {
  public:
   Speaker(std::string sink, std::function<void(const std::string&)> trouble);
   ~Speaker();
-  Speaker(const Speaker&) = delete;
-  Speaker& operator=(const Speaker&) = delete;
 
   void play(Sound sound);
   /// True while it plays. A device that hangs does not: the robot hears on.

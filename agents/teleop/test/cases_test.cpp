@@ -26,30 +26,25 @@ class Pages : public saphira::test::LinePlayer {
     control_.join(1, "ann");
     control_.join(2, "bob");
     events_ = {
-        {"pass", [this](auto& in) { now_ += read<double>(in); }},
-        {"clock", [this](auto& in) { ahead_ += read<double>(in); }},
-        {"ann", [this](auto& in) { page(1, in); }},
-        {"bob", [this](auto& in) { page(2, in); }},
-        {"holds", [this](auto& in) { samples(true, read<double>(in)); }},
-        {"lets-go", [this](auto& in) { samples(false, read<double>(in)); }},
-        {"waits", [this](auto& in) { waiting_.push_back(sample(read<std::string>(in), in)); }},
-        {"arrives",
-         [this](auto&) {
-           refused_ = control_.drive(1, waiting_.front(), now_);
-           waiting_.erase(waiting_.begin());
-         }},
-        {"sample", [this](auto& in) {
-           refused_ = control_.drive(1, sample(read<std::string>(in), in), now_);
-         }}};
-    facts_ = {{"moves", [this] { return yes(control_.order(now_).active); }},
-              {"moved", [this] { return format("%g", moved_); }},
-              {"order", [this] { return order(); }},
-              {"refused", [this] { return refused_; }},
-              {"holder", [this] { return control_.state().name; }},
-              {"let go", [this] { return control_.state().let_go; }},
-              {"note", [this] { return control_.state().note; }},
-              {"asked",
-               [this] { return joined(control_.state().asked, " ", &Control::Operator::name); }}};
+      ON("pass", now_ += read<double>(in)),
+      ON("clock", ahead_ += read<double>(in)),
+      ON("ann", page(1, in)),
+      ON("bob", page(2, in)),
+      ON("holds", samples(true, read<double>(in))),
+      ON("lets-go", samples(false, read<double>(in))),
+      ON("waits", waiting_.push_back(sample(read<std::string>(in), in))),
+      ON("arrives", refused_ = control_.drive(1, waiting_.front(), now_);
+         waiting_.erase(waiting_.begin())),
+      ON("sample", refused_ = control_.drive(1, sample(read<std::string>(in), in), now_))
+    };
+    facts_ = {IS("moves", yes(control_.order(now_).active)),
+              IS("moved", format("%g", moved_)),
+              IS("order", order()),
+              IS("refused", refused_),
+              IS("holder", control_.state().name),
+              IS("let go", control_.state().let_go),
+              IS("note", control_.state().note),
+              IS("asked", joined(control_.state().asked, " ", &Control::Operator::name))};
   }
 
  private:
@@ -120,36 +115,29 @@ class Pages : public saphira::test::LinePlayer {
 class Keyboard : public saphira::test::LinePlayer {
  public:
   Keyboard() {
-    events_ = {{"limit", [this](auto& in) { drive_.set_max_velocity(read<double>(in)); }},
-               {"pass", [this](auto& in) { now_ += read<double>(in); }},
-               {"at", [this](auto& in) { now_ = read<double>(in); }},
-               {"release", [this](auto&) { drive_.release(); }},
-               {"type", [this](auto& in) {
-                  input_ += saphira::test::replaced(
-                      saphira::test::replaced(rest(in), "ESC", "\x1b"), "CTRL-C", "\x03");
-                }}};
+    events_ = {ON("limit", drive_.set_max_velocity(read<double>(in))),
+               ON("pass", now_ += read<double>(in)), ON("at", now_ = read<double>(in)),
+               ON("release", drive_.release()),
+               ON("type", input_ += saphira::test::replaced(
+                              saphira::test::replaced(rest(in), "ESC", "\x1b"), "CTRL-C", "\x03"))};
     for (std::size_t i = 0; i < kEnumerators<DriveKey>.size(); ++i)
       events_[std::string(kEnumeratorNames<DriveKey>.at(i))] = [this, i](auto&) {
         drive_.press(kEnumerators<DriveKey>.at(i), now_);
       };
-    facts_ = {{"drives",
-               [this] {
-                 const Order order = drive_.order(now_);
-                 return order.active ? format("%.3g", order.velocity) : "no";
-               }},
-              {"active", [this] { return yes(drive_.order(now_).active); }},
-              {"turn",
-               [this] {
-                 return format("%g, move %d", drive_.order(now_).turn->by,
-                               static_cast<int>(drive_.order(now_).turn->move));
-               }},
-              {"keys",
-               [this] {
-                 return joined(take_keys(input_), " ", [](DriveKey key) {
-                   return kEnumeratorNames<DriveKey>.at(static_cast<std::size_t>(key));
-                 });
-               }},
-              {"left", [this] { return std::to_string(input_.size()); }}};
+    facts_ = {
+        {"drives",
+         [this] {
+           const Order order = drive_.order(now_);
+           return order.active ? format("%.3g", order.velocity) : "no";
+         }},
+        IS("active", yes(drive_.order(now_).active)),
+        IS("turn", format("%g, move %d", drive_.order(now_).turn->by,
+                          static_cast<int>(drive_.order(now_).turn->move))),
+        IS("keys", joined(take_keys(input_), " ",
+                          [](DriveKey key) {
+                            return kEnumeratorNames<DriveKey>.at(static_cast<std::size_t>(key));
+                          })),
+        IS("left", std::to_string(input_.size()))};
   }
 
  private:
@@ -177,8 +165,8 @@ class Stick : public saphira::test::LinePlayer {
       stick_.take(event(type, number, value), now_);
     };
     events_ = {
-        {"at", [this](auto& in) { now_ = read<double>(in); }},
-        {"limit", [this](auto& in) { stick_.set_max_velocity(read<double>(in)); }},
+        ON("at", now_ = read<double>(in)),
+        ON("limit", stick_.set_max_velocity(read<double>(in))),
         {"down", [take](auto& in) { take(JS_EVENT_BUTTON, read<unsigned>(in), 1); }},
         {"up", [take](auto& in) { take(JS_EVENT_BUTTON, read<unsigned>(in), 0); }},
         {"is-down",
@@ -186,11 +174,11 @@ class Stick : public saphira::test::LinePlayer {
         {"x", [take](auto& in) { take(JS_EVENT_AXIS, 0, read<int>(in)); }},
         {"y", [take](auto& in) { take(JS_EVENT_AXIS, 1, read<int>(in)); }},
         {"is-y", [take](auto& in) { take(JS_EVENT_AXIS | JS_EVENT_INIT, 1, read<int>(in)); }},
-        {"new", [this](auto&) { stick_ = {}; }},
-        {"gamepad", [this](auto&) { set_gamepad(); }},
-        {"nameless", [this](auto&) { stick_.set_layout({}, {}); }},
-        {"lost", [this](auto&) { stick_.lost(); }},
-        {"let-go", [this](auto&) { stick_.let_go(); }}};
+        ON("new", stick_ = {}),
+        ON("gamepad", set_gamepad()),
+        ON("nameless", stick_.set_layout({}, {})),
+        ON("lost", stick_.lost()),
+        ON("let-go", stick_.let_go())};
     facts_ = {{"drives",
                [this] {
                  const Order order = stick_.order(now_);
@@ -199,8 +187,8 @@ class Stick : public saphira::test::LinePlayer {
                             ? format("%.3g %.3g", order.velocity + 0.0, order.rotation + 0.0)
                             : "no";
                }},
-              {"silent", [this] { return yes(stick_.is_silent(now_)); }},
-              {"dead man", [this] { return stick_.dead_man(); }}};
+              IS("silent", yes(stick_.is_silent(now_))),
+              IS("dead man", stick_.dead_man())};
   }
 
  private:
@@ -216,32 +204,26 @@ class Stick : public saphira::test::LinePlayer {
 class Piloted : public saphira::test::LinePlayer {
  public:
   Piloted() {
-    events_ = {{"holds", [this](auto& in) { order_ = {true, read<double>(in), 0, {}, 90, "ann"}; }},
-               {"frees", [this](auto&) { order_ = {}; }},
-               {"rotates", [this](auto& in) { order_.rotation = read<double>(in); }},
-               {"turns",
-                [this](auto& in) {
-                  const auto by = read<double>(in);
-                  order_.turn = {by, read<std::uint64_t>(in)};
-                }},
-               {"drive",
-                [this](auto& in) {
-                  command_ = pilot_.drive(order_, {.epoch = 7, .cycle = read<std::uint64_t>(in)});
-                }},
-               {"hand-back", [this](auto&) { pilot_.hand_back(); }},
-               {"press", [this](auto&) { pilot_.press("ann"); }},
-               {"latched", [this](auto& in) { command_ = pilot_.stop(rest(in) == "yes"); }},
-               {"at", [this](auto& in) { now_ = read<double>(in); }},
-               {"refused", [this](auto& in) {
-                  v1::Grant grant;
-                  const auto source = read<std::string>(in);
-                  grant.refused = {{.role = v1::ROLE_TELEOP, .source = source, .reason = rest(in)}};
-                  pilot_.heard(grant, now_);
-                }}};
-    facts_ = {{"command", [this] { return command(); }},
-              {"number", [this] { return std::to_string(command_->number); }},
-              {"motion", [this] { return motion(); }},
-              {"refusal", [this] { return pilot_.refusal(now_); }}};
+    events_ = {
+      ON("holds", order_ = {true, read<double>(in), 0, {}, 90, "ann"}),
+      ON("frees", order_ = {}),
+      ON("rotates", order_.rotation = read<double>(in)),
+      ON("turns", const auto by = read<double>(in); order_.turn = {by, read<std::uint64_t>(in)}),
+      ON("drive", command_ = pilot_.drive(order_, {.epoch = 7, .cycle = read<std::uint64_t>(in)})),
+      ON("hand-back", pilot_.hand_back()),
+      ON("press", pilot_.press("ann")),
+      ON("latched", command_ = pilot_.stop(rest(in) == "yes")),
+      ON("at", now_ = read<double>(in)),
+      {"refused",
+       [this](auto& in) {
+         v1::Grant grant;
+         const auto source = read<std::string>(in);
+         grant.refused = {{.role = v1::ROLE_TELEOP, .source = source, .reason = rest(in)}};
+         pilot_.heard(grant, now_);
+       }}
+    };
+    facts_ = {IS("command", command()), IS("number", std::to_string(command_->number)),
+              IS("motion", motion()), IS("refusal", pilot_.refusal(now_))};
   }
 
  private:

@@ -32,8 +32,7 @@ class Server {
 
   /// std::runtime_error that names the cause (the port, the certificate).
   Server(const Options& options, std::vector<Channel> channels, Events events);
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
+  Server& operator=(Server&&) = delete;
 
   int port() const { return sockets_.port(); }
   bool wants(std::size_t channel) const;

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "saphira/base/enumerators.hpp"
-#include "saphira/base/text.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "saphira/bus/status_words.hpp"
 #include "saphira/situation/words.hpp"

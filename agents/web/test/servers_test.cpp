@@ -139,8 +139,6 @@ class Running {
     thread_.join();
     close(stop_);
   }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
   S* operator->() { return &server_; }
 
  private:

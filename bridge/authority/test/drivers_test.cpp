@@ -56,42 +56,41 @@ Role role_of(const std::string& word) {
 class Drivers : public saphira::test::LinePlayer {
  public:
   Drivers() {
-    events_ = {{"anew", [this](auto&) { s_ = Scene(); }},
-               {"quiet", [this](auto& in) { s_ = Scene({.quiet = read<double>(in)}); }},
-               {"wait", [this](auto& in) { s_.wait(read<int>(in)); }},
-               {"pass", [this](auto& in) { s_.now += read<double>(in); }},
-               {"look", [this](auto&) { s_.driver(); }},
-               {"connect", [this](auto& in) { s_.arbiter.connect(read<std::uint64_t>(in)); }},
-               {"cycle", [this](auto& in) { s_.cycle = read<std::uint64_t>(in); }},
-               {"deaf", [this](auto& in) { deaf(in); }},
-               {"lost",
-                [this](auto& in) {
-                  const Role role = role_of(read<std::string>(in));
-                  s_.arbiter.lost(role, writer(read<int>(in)), s_.now);
-                }},
-               {"restart",
-                [this](auto&) {
-                  const Latches latches = s_.arbiter.latches();
-                  s_ = Scene();
-                  s_.arbiter.restore(latches);
-                }},
-               {"late", [this](auto& in) { late_ = command(in); }},
-               {"comes", [this](auto&) { offer(late_, true); }}};
+    events_ = {
+      ON("anew", s_ = Scene()),
+      ON("quiet", s_ = Scene({.quiet = read<double>(in)})),
+      ON("wait", s_.wait(read<int>(in))),
+      ON("pass", s_.now += read<double>(in)),
+      ON("look", s_.driver()),
+      ON("connect", s_.arbiter.connect(read<std::uint64_t>(in))),
+      ON("cycle", s_.cycle = read<std::uint64_t>(in)),
+      ON("deaf", deaf(in)),
+      ON("lost", const Role role = role_of(read<std::string>(in));
+         s_.arbiter.lost(role, writer(read<int>(in)), s_.now)),
+      {"restart",
+       [this](auto&) {
+         const Latches latches = s_.arbiter.latches();
+         s_ = Scene();
+         s_.arbiter.restore(latches);
+       }},
+      ON("late", late_ = command(in)),
+      ON("comes", offer(late_, true))
+    };
     for (const Role role : kRoles)
       events_[name(role)] = [this, role](auto& in) {
         std::istringstream whole(name(role) + (" " + rest(in)));
         const Command given = command(whole);
         offer(given, !refused_);
       };
-    facts_ = {{"drives", [this] { return drives(); }},
-              {"because", [this] { return grant_.reason; }},
-              {"expires", [this] { return format("%g", grant_.expires_in); }},
-              {"age", [this] { return format("%g", grant_.command_age); }},
-              {"pressed by", [this] { return grant_.estop_source; }},
-              {"stop", [this] { return std::to_string(grant_.stop.number); }},
-              {"stopped by", [this] { return grant_.stop_source; }},
-              {"refusals", [this] { return refusals(); }},
-              {"reset", [this] { return s_.arbiter.reset("keyboard", s_.now); }}};
+    facts_ = {IS("drives", drives()),
+              IS("because", grant_.reason),
+              IS("expires", format("%g", grant_.expires_in)),
+              IS("age", format("%g", grant_.command_age)),
+              IS("pressed by", grant_.estop_source),
+              IS("stop", std::to_string(grant_.stop.number)),
+              IS("stopped by", grant_.stop_source),
+              IS("refusals", refusals()),
+              IS("reset", s_.arbiter.reset("keyboard", s_.now))};
     for (std::uint64_t id = 1; id <= 3; ++id)
       facts_["stop " + std::to_string(id)] = [this, id] {
         return joined(s_.arbiter.stop({7, id}, "a person", s_.now, s_.cycle));

@@ -26,50 +26,34 @@ class Echoes : public test::LinePlayer {
  public:
   Echoes() {
     events_ = {
-        {"anew",
-         [this](auto&) {
-           map_ = EchoMap();
-           edges_.clear();
-         }},
-        {"robot", [this](auto& in) { robot_ = pose(in); }},
-        {"echo",
-         [this](auto& in) {
-           const Pose at = sonar(in);
-           readings_ = {echo(at, read<double>(in))};
-         }},
-        {"silence",
-         [this](auto& in) {
-           readings_ = {{0, sonar(in), std::nullopt}};
-         }},
-        {"silence-too",
-         [this](auto& in) {
-           readings_.push_back({0, sonar(in), std::nullopt});
-         }},
-        {"quiet", [this](auto&) { readings_.clear(); }},
-        {"edges",
-         [this](auto& in) {
-           edges_ = {{place(in), place(in)}};
-         }},
-        {"cycle",
-         [this](auto& in) { map_.update(read<std::uint64_t>(in), robot_, readings_, edges_); }},
-        {"cycles",
-         [this](auto& in) {
-           const auto from = read<std::uint64_t>(in);
-           const auto to = read<std::uint64_t>(in);
-           std::uint64_t step = 1;
-           in >> step;
-           for (std::uint64_t cycle = from; cycle <= to; cycle += step)
-             map_.update(cycle, robot_, readings_, edges_);
-         }},
-        {"spot", [this](auto& in) { EXPECT_TRUE(any_near(map_.spots(), place(in))); }},
-        {"no-spot", [this](auto& in) { EXPECT_FALSE(any_near(map_.spots(), place(in))); }},
-        {"sees", [this](auto& in) {
-           const auto cycle = read<std::uint64_t>(in);
-           const bool ahead = read<std::string>(in) == "ahead";
-           EXPECT_EQ(yes(map_.sees(cycle, ahead)), rest(in));
-         }}};
-    facts_ = {{"empty", [this] { return yes(map_.spots().empty()); }},
-              {"edges known", [this] { return yes(!map_.edges().empty()); }}};
+      ON("anew", map_ = EchoMap(); edges_.clear()),
+      ON("robot", robot_ = pose(in)),
+      ON("echo", const Pose at = sonar(in); readings_ = {echo(at, read<double>(in))}),
+      ON("silence", readings_ = {{0, sonar(in), std::nullopt}}),
+      ON("silence-too", readings_.push_back({0, sonar(in), std::nullopt})),
+      ON("quiet", readings_.clear()),
+      ON("edges", edges_ = {{place(in), place(in)}}),
+      ON("cycle", map_.update(read<std::uint64_t>(in), robot_, readings_, edges_)),
+      {"cycles",
+       [this](auto& in) {
+         const auto from = read<std::uint64_t>(in);
+         const auto to = read<std::uint64_t>(in);
+         std::uint64_t step = 1;
+         in >> step;
+         for (std::uint64_t cycle = from; cycle <= to; cycle += step)
+           map_.update(cycle, robot_, readings_, edges_);
+       }},
+      ON("spot", EXPECT_TRUE(any_near(map_.spots(), place(in)))),
+      ON("no-spot", EXPECT_FALSE(any_near(map_.spots(), place(in)))),
+      {"sees",
+       [this](auto& in) {
+         const auto cycle = read<std::uint64_t>(in);
+         const bool ahead = read<std::string>(in) == "ahead";
+         EXPECT_EQ(yes(map_.sees(cycle, ahead)), rest(in));
+       }}
+    };
+    facts_ = {IS("empty", yes(map_.spots().empty())),
+              IS("edges known", yes(!map_.edges().empty()))};
   }
 
  private:

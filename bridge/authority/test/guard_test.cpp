@@ -17,46 +17,42 @@ class Guards : public test::LinePlayer {
  public:
   Guards() {
     events_ = {
-        {"points", [this](auto& in) { points_ = places(in); }},
-        {"edges", [this](auto& in) { edges_ = places(in); }},
-        {"body",
-         [this](auto& in) {
-           const auto name = read<std::string>(in);
-           const auto value = read<double>(in);
-           if (name.starts_with("max"))
-             (name == "max_velocity" ? body_.max_velocity : body_.max_rotation_velocity) = value;
-           else
-             body_.*kSenses().at(name) = value != 0.0;
-         }},
-        {"setting",
-         [this](auto& in) {
-           const auto name = read<std::string>(in);
-           if (name == "enabled")
-             settings_.enabled = read<bool>(in);
-           else
-             settings_.*kSettings().at(name) = read<double>(in);
-         }},
-        {"drive",
-         [this](auto& in) {
-           double wanted[4] = {};
-           for (double& one : wanted)
-             in >> one;
-           guarded_ =
-               guard(settings_, body_, points_, wanted[0], wanted[1], wanted[2], wanted[3], edges_);
-         }},
-        {"late",
-         [this](auto& in) {
-           const auto velocity = read<double>(in);
-           guarded_ = slow_for_age({velocity, 0.5, GuardAction::none, {}}, read<double>(in), 0.1);
-         }},
-        {"says", [this](auto& in) { expect_like(guarded_.reason, rest(in)); }}};
-    values_ = {{"velocity", [this] { return guarded_.velocity; }},
-               {"turn", [this] { return guarded_.rotation_velocity; }},
-               {"towards",
-                [this] { return guarded_.velocity * points_.at(0).x() / points_.at(0).norm(); }}};
-    facts_ = {{"action", [this] { return kActions[static_cast<int>(guarded_.action)]; }},
-              {"reason", [this] { return guarded_.reason; }},
-              {"silent", [this] { return yes(guarded_.reason.empty()); }},
+      ON("points", points_ = places(in)),
+      ON("edges", edges_ = places(in)),
+      {"body",
+       [this](auto& in) {
+         const auto name = read<std::string>(in);
+         const auto value = read<double>(in);
+         if (name.starts_with("max"))
+           (name == "max_velocity" ? body_.max_velocity : body_.max_rotation_velocity) = value;
+         else
+           body_.*kSenses().at(name) = value != 0.0;
+       }},
+      {"setting",
+       [this](auto& in) {
+         const auto name = read<std::string>(in);
+         if (name == "enabled")
+           settings_.enabled = read<bool>(in);
+         else
+           settings_.*kSettings().at(name) = read<double>(in);
+       }},
+      {"drive",
+       [this](auto& in) {
+         double wanted[4] = {};
+         for (double& one : wanted)
+           in >> one;
+         guarded_ =
+             guard(settings_, body_, points_, wanted[0], wanted[1], wanted[2], wanted[3], edges_);
+       }},
+      ON("late", const auto velocity = read<double>(in);
+         guarded_ = slow_for_age({velocity, 0.5, GuardAction::none, {}}, read<double>(in), 0.1)),
+      ON("says", expect_like(guarded_.reason, rest(in)))
+    };
+    values_ = {IS("velocity", guarded_.velocity), IS("turn", guarded_.rotation_velocity),
+               IS("towards", guarded_.velocity * points_.at(0).x() / points_.at(0).norm())};
+    facts_ = {IS("action", kActions[static_cast<int>(guarded_.action)]),
+              IS("reason", guarded_.reason),
+              IS("silent", yes(guarded_.reason.empty())),
               {"obstacle", [this] {
                  const Vec2 at = guarded_.obstacle.value();
                  return format("%.2f %.2f", at.x(), at.y());

@@ -41,137 +41,98 @@ class Bridge : public saphira::test::LinePlayer {
  public:
   Bridge() {
     events_ = {
-        {"lockstep",
-         [this](auto& in) { begin({.lockstep = true, .free_step = !rest(in).empty()}); }},
-        {"anew", [this](auto&) { begin({}); }},
-        {"vision", [this](auto&) { begin({.vision = true}); }},
-        {"robot", [this](auto& in) { each(in, &Bridge::set_robot); }},
-        {"shows", [this](auto& in) { each(in, &Bridge::show); }},
-        {"around", [this](auto& in) { around(in); }},
-        {"parameters", [this](auto& in) { s_->has_parameters = rest(in) == "yes"; }},
-        {"mute", [this](auto&) { s_->mute = true; }},
-        {"connect", [this](auto&) { s_->connect(); }},
-        {"driven", [this](auto& in) { driven(rest(in)); }},
-        {"pass", [this](auto& in) { s_->pass(read<double>(in)); }},
-        {"slowly", [this](auto& in) { s_->pass_slowly(read<double>(in)); }},
-        {"cycle", [this](auto&) { s_->cycle(); }},
-        {"cycles", [this](auto& in) { cycles(in); }},
-        {"hears", [this](auto& in) { s_->say(packet(read<std::string>(in), in)); }},
-        {"receives",
-         [this](auto&) { s_->core.received(std::exchange(s_->to_bridge, {}), s_->now); }},
-        {"drive", [this](auto& in) { s_->tell(wish(in)); }},
-        {"late", [this](auto& in) { late_ = wish(in); }},
-        {"comes", [this](auto&) { s_->tell(late_); }},
-        {"command", [this](auto& in) { s_->core.command(wish(in), s_->now); }},
-        {"answer", [this](auto&) { s_->answer(); }},
-        {"leave",
-         [this](auto& in) {
-           s_->core.writer_lost(valued<Role>(rest(in)), {}, s_->now);
-           s_->answer();
-         }},
-        {"reset",
-         [this](auto& in) {
-           s_->core.request({.functor = "reset", .arguments = {}, .source = rest(in)}, s_->now);
-           s_->deliver();
-         }},
-        {"restore",
-         [this](auto& in) {
-           s_->core.restore({.estopped = true, .estop_source = rest(in)});
-           s_->deliver();
-         }},
-        {"request", [this](auto& in) { request(in); }},
-        {"karen-requests",
-         [this](auto& in) {
-           request(in, Identity{"karen", "operator"});
-         }},
-        {"turns-servo",
-         [this](auto& in) { EXPECT_TRUE(s_->was_sent(protocol::Ptu{read<std::uint16_t>(in)})); }},
-        {"permit",
-         [this](auto& in) {
-           s_->core.permit(read<std::uint64_t>(in));
-           s_->answer();
-         }},
-        {"lose",
-         [this](auto& in) {
-           s_->core.link_closed(rest(in), s_->now);
-           s_->deliver();
-         }},
-        {"end",
-         [this](auto&) {
-           s_->core.end(s_->now);
-           s_->deliver();
-         }},
-        {"forget", [this](auto&) { s_->forget(); }},
-        {"noted", [this](auto& in) { EXPECT_GT(times_noted(rest(in)), 0) << notes(); }},
-        {"noted-once", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 1) << notes(); }},
-        {"not-noted", [this](auto& in) { EXPECT_EQ(times_noted(rest(in)), 0) << notes(); }}};
-    facts_ = {
-        {"drives", [this] { return named(s_->core.grant().role); }},
-        {"age", [this] { return format("%g", s_->core.grant().command_age); }},
-        {"stopped by", [this] { return stopped(); }},
-        {"granted", [this] { return granted(); }},
-        {"guarded", [this] { return guarded(); }},
-        {"refused", [this] { return refused(); }},
-        {"session", [this] { return yes(s_->core.in_session()); }},
-        {"stamp", [this] { return stamp(); }},
-        {"link", [this] { return std::string(s_->around.link_open ? "open" : "closed"); }},
-        {"protocol", [this] { return named(s_->core.parameters().protocol); }},
-        {"may connect in 1.8", [this] { return yes(s_->core.may_connect(s_->now + 1.8)); }},
-        {"may connect in 2", [this] { return yes(s_->core.may_connect(s_->now + 2.0)); }},
-        {"awaits", [this] { return yes(s_->core.awaits_answer()); }},
-        {"due soon", [this] { return yes(s_->core.due(s_->now) <= s_->now + 0.05); }},
-        {"latched", [this] { return yes(s_->core.latches().estopped); }},
-        {"kept",
-         [this] {
-           return joined(s_->all<KeepLatches>(), " ",
-                         [](const auto& kept) { return yes(kept.latches.estopped); });
-         }},
-        {"sent", [this] { return sent(); }},
-        {"commands", [this] { return commands(); }},
-        {"speeds", [this] { return speeds(); }},
-        {"steps", [this] { return std::to_string(s_->times_sent(protocol::Step{})); }},
-        {"keeper", [this] { return keeper(); }},
-        {"outputs", [this] { return outputs(s_->said); }},
-        {"piece", [this] { return s_->core.work(s_->now) ? outputs(s_->core.take()) : "none"; }},
-        {"other packets", [this] { return std::to_string(s_->all<OtherPacket>().size()); }},
-        {"bad packets", [this] { return std::to_string(newest<CycleBegan>().bad_packets); }},
-        {"motors on", [this] { return yes(information().motors_on.value_or(true)); }},
-        {"battery", [this] { return format("%g", information().battery); }},
-        {"status",
-         [this] {
-           const Condition is = s_->condition();
-           return name_of(is.health) + (is.reason.empty() ? "" : ", " + is.reason);
-         }},
-        {"done steps", [this] { return std::to_string(newest<StatusReport>().steps); }},
-        {"late", [this] { return std::to_string(newest<StatusReport>().late); }},
-        {"refused in all", [this] { return std::to_string(newest<StatusReport>().refused); }},
-        {"notes", [this] { return notes(); }},
-        {"warnings", [this] { return notes(Note::Level::warning); }},
-        {"stop", [this] { return stop({}); }},
-        {"stop by karen",
-         [this] {
-           return stop({{"by", std::string("karen")}});
-         }},
-        {"ends",
-         [this] {
-           return joined(s_->all<LaterAnswer>(), " | ",
-                         [](const LaterAnswer& later) { return in_words(later.answer); });
-         }},
-        {"answered", [this] { return answer_ ? in_words(*answer_) : "later"; }},
-        {"later",
-         [this] {
-           return joined(s_->all<LaterAnswer>(), " | ", [](const LaterAnswer& later) {
-             return std::to_string(later.number) + (later.device ? " device " : " ") +
-                    in_words(later.answer);
-           });
-         }},
-        {"devices", [this] { return std::to_string(s_->all<DevicesChanged>().size()); }},
-        {"device asked by", [this] { return newest<DevicesChanged>().requests.at(0).source; }},
-        {"devices at", [this] { return std::to_string(newest<DevicesChanged>().stamp.cycle); }},
-        {"unread",
-         [this] { return std::to_string(newest<DevicesChanged>().reports.unread.at(0x9A)); }},
-        {"vision set", [this] { return newest<VisionSet>().text; }},
-        {"audited", [this] { return audited(); }}};
+      ON("lockstep", begin({.lockstep = true, .free_step = !rest(in).empty()})),
+      ON("anew", begin({})),
+      ON("vision", begin({.vision = true})),
+      ON("robot", each(in, &Bridge::set_robot)),
+      ON("shows", each(in, &Bridge::show)),
+      ON("around", around(in)),
+      ON("parameters", s_->has_parameters = rest(in) == "yes"),
+      ON("mute", s_->mute = true),
+      ON("connect", s_->connect()),
+      ON("driven", driven(rest(in))),
+      ON("pass", s_->pass(read<double>(in))),
+      ON("slowly", s_->pass_slowly(read<double>(in))),
+      ON("cycle", s_->cycle()),
+      ON("cycles", cycles(in)),
+      ON("hears", s_->say(packet(read<std::string>(in), in))),
+      ON("receives", s_->core.received(std::exchange(s_->to_bridge, {}), s_->now)),
+      ON("drive", s_->tell(wish(in))),
+      ON("late", late_ = wish(in)),
+      ON("comes", s_->tell(late_)),
+      ON("command", s_->core.command(wish(in), s_->now)),
+      ON("answer", s_->answer()),
+      ON("leave", s_->core.writer_lost(valued<Role>(rest(in)), {}, s_->now); s_->answer()),
+      ON("reset",
+         s_->core.request({.functor = "reset", .arguments = {}, .source = rest(in)}, s_->now);
+         s_->deliver()),
+      ON("restore", s_->core.restore({.estopped = true, .estop_source = rest(in)}); s_->deliver()),
+      ON("request", request(in)),
+      ON("karen-requests", request(in, Identity{"karen", "operator"})),
+      ON("turns-servo", EXPECT_TRUE(s_->was_sent(protocol::Ptu{read<std::uint16_t>(in)}))),
+      ON("permit", s_->core.permit(read<std::uint64_t>(in)); s_->answer()),
+      ON("lose", s_->core.link_closed(rest(in), s_->now); s_->deliver()),
+      ON("end", s_->core.end(s_->now); s_->deliver()),
+      ON("forget", s_->forget()),
+      ON("noted", EXPECT_GT(times_noted(rest(in)), 0) << notes()),
+      ON("noted-once", EXPECT_EQ(times_noted(rest(in)), 1) << notes()),
+      ON("not-noted", EXPECT_EQ(times_noted(rest(in)), 0) << notes())
+    };
+    facts_ = {IS("drives", named(s_->core.grant().role)),
+              IS("age", format("%g", s_->core.grant().command_age)),
+              IS("stopped by", stopped()),
+              IS("granted", granted()),
+              IS("guarded", guarded()),
+              IS("refused", refused()),
+              IS("session", yes(s_->core.in_session())),
+              IS("stamp", stamp()),
+              IS("link", std::string(s_->around.link_open ? "open" : "closed")),
+              IS("protocol", named(s_->core.parameters().protocol)),
+              IS("may connect in 1.8", yes(s_->core.may_connect(s_->now + 1.8))),
+              IS("may connect in 2", yes(s_->core.may_connect(s_->now + 2.0))),
+              IS("awaits", yes(s_->core.awaits_answer())),
+              IS("due soon", yes(s_->core.due(s_->now) <= s_->now + 0.05)),
+              IS("latched", yes(s_->core.latches().estopped)),
+              IS("kept", joined(s_->all<KeepLatches>(), " ",
+                                [](const auto& kept) { return yes(kept.latches.estopped); })),
+              IS("sent", sent()),
+              IS("commands", commands()),
+              IS("speeds", speeds()),
+              IS("steps", std::to_string(s_->times_sent(protocol::Step{}))),
+              IS("keeper", keeper()),
+              IS("outputs", outputs(s_->said)),
+              IS("piece", s_->core.work(s_->now) ? outputs(s_->core.take()) : "none"),
+              IS("other packets", std::to_string(s_->all<OtherPacket>().size())),
+              IS("bad packets", std::to_string(newest<CycleBegan>().bad_packets)),
+              IS("motors on", yes(information().motors_on.value_or(true))),
+              IS("battery", format("%g", information().battery)),
+              {"status",
+               [this] {
+                 const Condition is = s_->condition();
+                 return name_of(is.health) + (is.reason.empty() ? "" : ", " + is.reason);
+               }},
+              IS("done steps", std::to_string(newest<StatusReport>().steps)),
+              IS("late", std::to_string(newest<StatusReport>().late)),
+              IS("refused in all", std::to_string(newest<StatusReport>().refused)),
+              IS("notes", notes()),
+              IS("warnings", notes(Note::Level::warning)),
+              IS("stop", stop({})),
+              IS("stop by karen", stop({{"by", std::string("karen")}})),
+              IS("ends", joined(s_->all<LaterAnswer>(), " | ",
+                                [](const LaterAnswer& later) { return in_words(later.answer); })),
+              IS("answered", answer_ ? in_words(*answer_) : "later"),
+              IS("later", joined(s_->all<LaterAnswer>(), " | ",
+                                 [](const LaterAnswer& later) {
+                                   return std::to_string(later.number) +
+                                          (later.device ? " device " : " ") +
+                                          in_words(later.answer);
+                                 })),
+              IS("devices", std::to_string(s_->all<DevicesChanged>().size())),
+              IS("device asked by", newest<DevicesChanged>().requests.at(0).source),
+              IS("devices at", std::to_string(newest<DevicesChanged>().stamp.cycle)),
+              IS("unread", std::to_string(newest<DevicesChanged>().reports.unread.at(0x9A))),
+              IS("vision set", newest<VisionSet>().text),
+              IS("audited", audited())};
   }
 
  private:

@@ -1,7 +1,6 @@
 #include "saphira/protocol/command.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 

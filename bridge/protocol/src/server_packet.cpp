@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
 #include "fields.hpp"
+#include "saphira/base/members.hpp"
 #include "saphira/base/overloaded.hpp"
 
 namespace saphira::protocol {
@@ -55,24 +57,8 @@ constexpr std::pair<PacketType, std::string_view> kNames[] = {
 template <class T, class Packet>
 concept Is = std::is_same_v<std::remove_const_t<T>, Packet>;
 
-void fields(Is<ConfigPacket> auto& c, const auto& visit) {
-  each(visit, c.robot_class, c.subclass, c.serial, c.four_motors, c.rotation_velocity_top,
-       c.velocity_top, c.rotation_acceleration_top, c.acceleration_top, c.pwm_max, c.name, c.cycle,
-       c.host_baud, c.aux1_baud, c.gripper, c.front_sonar, c.rear_sonar, c.low_battery,
-       c.revolution_count, c.watchdog, c.normal_packets, c.stall_value, c.stall_count,
-       c.joystick_velocity, c.joystick_rotation_velocity, c.rotation_velocity_max, c.velocity_max,
-       c.rotation_acceleration, c.rotation_deceleration, c.rotation_kp, c.rotation_kv,
-       c.rotation_ki, c.acceleration, c.deceleration, c.translation_kp, c.translation_kv,
-       c.translation_ki, c.front_bumpers, c.rear_bumpers, c.charger, c.sonar_cycle, c.reset_baud,
-       c.gyro_type, c.drift_factor, c.aux2_baud, c.aux3_baud, c.encoder_ticks_per_mm,
-       c.shutdown_volts, c.firmware, c.gyro_clockwise, c.gyro_counter_clockwise, c.kinematics_delay,
-       c.lateral_velocity_top, c.lateral_acceleration_top, c.lateral_velocity_max,
-       c.lateral_acceleration, c.lateral_deceleration, c.charge_threshold);
-}
-
-void fields(Is<EncoderPacket> auto& p, const auto& visit) {
-  visit(p.left);
-  visit(p.right);
+void fields(auto& packet, const auto& visit) {
+  std::apply([&](auto&... members) { each(visit, members...); }, members_of(packet));
 }
 
 void fields(Is<IoPacket> auto& p, const auto& visit) {
@@ -81,16 +67,8 @@ void fields(Is<IoPacket> auto& p, const auto& visit) {
   visit(p.analogs, 64);
 }
 
-void fields(Is<GripperPacket> auto& p, const auto& visit) {
-  each(visit, p.kind, p.state, p.grasp_time);
-}
-
 void fields(Is<GyroPacket> auto& p, const auto& visit) {
   visit(p.readings, 64);
-}
-
-void fields(Is<JoystickPacket> auto& p, const auto& visit) {
-  each(visit, p.button1, p.button2, p.x, p.y, p.throttle);
 }
 
 void fields(Is<BatteryPacket> auto& p, const auto& visit) {
@@ -126,9 +104,7 @@ void fields(Is<SimLaserPacket> auto& p, const auto& visit) {
 void fields(Is<SimStatusPacket> auto& p, const auto& visit) {
   std::uint16_t unused = 0;
   visit(unused);
-  each(visit, p.flags, p.sim_interval, p.real_interval, p.last_interval, p.true_x, p.true_y,
-       p.true_z, p.true_th, p.latitude, p.longitude, p.altitude, p.gps, p.odometry_error_x,
-       p.odometry_error_y, p.odometry_error_th);
+  std::apply([&](auto&... members) { each(visit, members...); }, members_of(p));
 }
 
 struct Put : PutField {

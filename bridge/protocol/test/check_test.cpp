@@ -22,44 +22,31 @@ class Conversation : public test::LinePlayer {
  public:
   Conversation() {
     events_ = {
-        {"psos", [this](auto&) { begin(Protocol::kPsos); }},
-        {"anew", [this](auto&) { begin(Protocol::kArcos); }},
-        {"time", [this](auto& in) { time_ = read<double>(in); }},
-        {"synchronize", [this](auto&) { synchronize(); }},
-        {"open",
-         [this](auto&) {
-           synchronize();
-           say(Side::kClient, encode(Open{}));
-         }},
-        {"client", [this](auto& in) { say(Side::kClient, frame(bytes(in))); }},
-        {"server", [this](auto& in) { say(Side::kServer, frame(bytes(in))); }},
-        {"client-bytes", [this](auto& in) { say(Side::kClient, bytes(in)); }},
-        {"server-bytes", [this](auto& in) { say(Side::kServer, bytes(in)); }},
-        {"information", [this](auto& in) { information(in); }},
-        {"config",
-         [this](auto&) {
-           say(Side::kServer, encode(config_of(robot(Protocol::kArcos), "a", "b")));
-         }},
-        {"encoder", [this](auto&) { say(Side::kServer, encode(EncoderPacket{})); }},
-        {"battery", [this](auto&) { say(Side::kServer, encode(BatteryPacket{})); }},
-        {"io",
-         [this](auto&) {
-           say(Side::kServer, encode(IoPacket{{1}, {1}, {}}));
-         }},
-        {"disconnect", [this](auto&) { checker_.disconnect(); }},
-        {"violation",
-         [this](auto& in) {
-           EXPECT_EQ(checker_.violations(), 1U) << checker_.summary();
-           expect_like(to_string(checker_.findings().back()), "..." + rest(in) + "...");
-         }},
-        {"first", [this](auto& in) { expect_like(checker_.findings()[0].text, rest(in)); }},
-        {"last", [this](auto& in) { expect_like(checker_.findings().back().text, rest(in)); }},
-        {"summary", [this](auto& in) { expect_like(checker_.summary(), rest(in)); }}};
-    facts_ = {
-        {"violations", [this] { return std::to_string(checker_.violations()); }},
-        {"findings", [this] { return std::to_string(checker_.findings().size()); }},
-        {"offset", [this] { return std::to_string(checker_.findings().back().offset); }},
-        {"information packets", [this] { return std::to_string(checker_.packets().at(0x32)); }}};
+      ON("psos", begin(Protocol::kPsos)),
+      ON("anew", begin(Protocol::kArcos)),
+      ON("time", time_ = read<double>(in)),
+      ON("synchronize", synchronize()),
+      ON("open", synchronize(); say(Side::kClient, encode(Open{}))),
+      ON("client", say(Side::kClient, frame(bytes(in)))),
+      ON("server", say(Side::kServer, frame(bytes(in)))),
+      ON("client-bytes", say(Side::kClient, bytes(in))),
+      ON("server-bytes", say(Side::kServer, bytes(in))),
+      ON("information", information(in)),
+      ON("config", say(Side::kServer, encode(config_of(robot(Protocol::kArcos), "a", "b")))),
+      ON("encoder", say(Side::kServer, encode(EncoderPacket{}))),
+      ON("battery", say(Side::kServer, encode(BatteryPacket{}))),
+      ON("io", say(Side::kServer, encode(IoPacket{{1}, {1}, {}}))),
+      ON("disconnect", checker_.disconnect()),
+      ON("violation", EXPECT_EQ(checker_.violations(), 1U) << checker_.summary();
+         expect_like(to_string(checker_.findings().back()), "..." + rest(in) + "...")),
+      ON("first", expect_like(checker_.findings()[0].text, rest(in))),
+      ON("last", expect_like(checker_.findings().back().text, rest(in))),
+      ON("summary", expect_like(checker_.summary(), rest(in)))
+    };
+    facts_ = {IS("violations", std::to_string(checker_.violations())),
+              IS("findings", std::to_string(checker_.findings().size())),
+              IS("offset", std::to_string(checker_.findings().back().offset)),
+              IS("information packets", std::to_string(checker_.packets().at(0x32)))};
   }
 
  private:

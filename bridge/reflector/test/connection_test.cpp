@@ -34,10 +34,10 @@ Bytes identity(const std::string& name, const std::string& kind, const std::stri
 class Session : public saphira::test::LinePlayer {
  public:
   Session() {
-    events_ = {{"at", [this](auto& in) { now_ = read<double>(in); }},
-               {"begin", [this](auto& in) { sent_ = c_.begin(now_, rest(in) == "in a session"); }},
-               {"tick", [this](auto&) { sent_ = c_.tick(now_); }},
-               {"due", [this](auto&) { sent_ = c_.tick(now_ = c_.due()); }},
+    events_ = {ON("at", now_ = read<double>(in)),
+               ON("begin", sent_ = c_.begin(now_, rest(in) == "in a session")),
+               ON("tick", sent_ = c_.tick(now_)),
+               ON("due", sent_ = c_.tick(now_ = c_.due())),
                {"packet",
                 [this](auto& in) {
                   Bytes bytes;
@@ -50,15 +50,13 @@ class Session : public saphira::test::LinePlayer {
                   const auto kind = read<std::string>(in);
                   sent_ = c_.packet(identity(name, kind, rest(in)), now_);
                 }}};
-    facts_ = {
-        {"sent",
-         [this] { return joined(numbers(sent_), " ", [](int n) { return std::to_string(n); }); }},
-        {"open", [this] { return yes(c_.open()); }},
-        {"hopeless", [this] { return yes(c_.is_hopeless(now_)); }},
-        {"kind", [this] { return c_.identity().robot_class; }},
-        {"subclass", [this] { return c_.identity().subclass; }},
-        {"waits for", [this] { return c_.waiting_for(); }},
-        {"round trip", [this] { return decimal(c_.round_trip(), 6); }}};
+    facts_ = {IS("sent", joined(numbers(sent_), " ", [](int n) { return std::to_string(n); })),
+              IS("open", yes(c_.open())),
+              IS("hopeless", yes(c_.is_hopeless(now_))),
+              IS("kind", c_.identity().robot_class),
+              IS("subclass", c_.identity().subclass),
+              IS("waits for", c_.waiting_for()),
+              IS("round trip", decimal(c_.round_trip(), 6))};
   }
 
  private:

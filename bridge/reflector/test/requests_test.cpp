@@ -71,22 +71,22 @@ class Asker : public saphira::test::LinePlayer {
  public:
   Asker() {
     devices_.connect();
-    events_ = {{"robot", [this](auto& in) { robot(in); }},
-               {"shows", [this](auto& in) { shows(in); }},
-               {"deadline", [this](auto& in) { deadline_ = read<double>(in); }},
-               {"room", [this](auto& in) { room_ = read<std::size_t>(in); }},
-               {"ask", [this](auto& in) { ask(in); }},
-               {"begin", [this](auto&) { devices_.begin(parameters_); }},
-               {"connect", [this](auto&) { devices_.connect(); }},
-               {"cycles", [this](auto& in) { cycles(read<int>(in)); }},
-               {"hears", [this](auto& in) { hears(in); }},
+    events_ = {ON("robot", robot(in)),
+               ON("shows", shows(in)),
+               ON("deadline", deadline_ = read<double>(in)),
+               ON("room", room_ = read<std::size_t>(in)),
+               ON("ask", ask(in)),
+               ON("begin", devices_.begin(parameters_)),
+               ON("connect", devices_.connect()),
+               ON("cycles", cycles(read<int>(in))),
+               ON("hears", hears(in)),
                {"means", [](auto& in) { means(in); }}};
-    facts_ = {{"sent", [this] { return sent(); }},
-              {"answers", [this] { return answers(); }},
-              {"changed", [this] { return yes(devices_.take_changed()); }},
-              {"troubles", [this] { return joined(devices_.take_troubles(), " | "); }},
-              {"firmware", [this] { return devices_.reports().configuration->firmware; }},
-              {"unread", [this] { return std::to_string(devices_.reports().unread.at(0x9A)); }}};
+    facts_ = {IS("sent", sent()),
+              IS("answers", answers()),
+              IS("changed", yes(devices_.take_changed())),
+              IS("troubles", joined(devices_.take_troubles(), " | ")),
+              IS("firmware", devices_.reports().configuration->firmware),
+              IS("unread", std::to_string(devices_.reports().unread.at(0x9A)))};
   }
 
  private:

@@ -29,8 +29,7 @@ struct Inherited {
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
   }
-  Inherited(const Inherited&) = delete;
-  Inherited& operator=(const Inherited&) = delete;
+  Inherited& operator=(Inherited&&) = delete;
 };
 
 }  // namespace saphira::transport

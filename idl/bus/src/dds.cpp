@@ -124,8 +124,7 @@ class DdsEnd : public Endpoint {
     for (OnePart& part : parts_)
       bus_->peers.remove(part.ends);
   }
-  DdsEnd(const DdsEnd&) = delete;
-  DdsEnd& operator=(const DdsEnd&) = delete;
+  DdsEnd& operator=(DdsEnd&&) = delete;
 
   OnePart& part_of(const Session& session) {
     return parts_[static_cast<std::size_t>(session.side)];
@@ -182,8 +181,7 @@ class DdsWriter : public RawWriter, public DdsEnd<WriterPart> {
     bus_->add(*this);
   }
   ~DdsWriter() override { bus_->remove(*this); }
-  DdsWriter(const DdsWriter&) = delete;
-  DdsWriter& operator=(const DdsWriter&) = delete;
+  DdsWriter& operator=(DdsWriter&&) = delete;
 
   void open(Session& session, bool after_sleep) override {
     auto& part = part_of(session);
@@ -288,8 +286,6 @@ class DdsReader : public RawReader, public DdsEnd<ReaderPart> {
     bus_->add(*this);
   }
   ~DdsReader() override { bus_->remove(*this); }
-  DdsReader(const DdsReader&) = delete;
-  DdsReader& operator=(const DdsReader&) = delete;
 
   void open(Session& session, bool /*after_sleep*/) override {
     auto& part = part_of(session);

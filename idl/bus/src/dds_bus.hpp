@@ -89,8 +89,6 @@ class Bus {
  public:
   Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> wake);
   ~Bus();
-  Bus(const Bus&) = delete;
-  Bus& operator=(const Bus&) = delete;
 
   /// Opens it, now and in each session to come.
   void add(Endpoint& endpoint);

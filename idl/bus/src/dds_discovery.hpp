@@ -35,8 +35,6 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
         entrance_(std::move(entrance)),
         most_here_(most_here) {}
   ~Discovery() override;
-  Discovery(const Discovery&) = delete;
-  Discovery& operator=(const Discovery&) = delete;
   Discovery(Discovery&&) = delete;
   Discovery& operator=(Discovery&&) = delete;
 

@@ -115,8 +115,7 @@ class FastWriter : public Foreign::Writer {
       throw std::runtime_error("no writer on topic " + about.name);
   }
   ~FastWriter() override { publisher_.delete_datawriter(writer_); }
-  FastWriter(const FastWriter&) = delete;
-  FastWriter& operator=(const FastWriter&) = delete;
+  FastWriter& operator=(FastWriter&&) = delete;
 
   bool write(const std::string& bytes, const SampleId* answers) override {
     auto* const data = const_cast<std::string*>(&bytes);  // it is only read
@@ -156,8 +155,7 @@ class FastReader : public Foreign::Reader {
     reader_->set_listener(nullptr);
     subscriber_.delete_datareader(reader_);
   }
-  FastReader(const FastReader&) = delete;
-  FastReader& operator=(const FastReader&) = delete;
+  FastReader& operator=(FastReader&&) = delete;
 
   std::vector<ForeignSample> take() override {
     std::vector<ForeignSample> samples;
@@ -192,8 +190,7 @@ struct Foreign::Impl {
     participant->delete_contained_entities();
     fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Impl& operator=(Impl&&) = delete;
 
   fdds::Topic* topic(const ForeignTopic& about) const {
     fdds::TypeSupport(new Bytes(about.type)).register_type(participant);

@@ -6,7 +6,6 @@
 
 #include "internal.hpp"
 #include "saphira/base/fnv1a.hpp"
-#include "saphira/base/text.hpp"
 
 namespace saphira::bus::internal {
 namespace {

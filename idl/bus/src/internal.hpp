@@ -38,8 +38,6 @@ class Wake {
  public:
   Wake();
   ~Wake();
-  Wake(const Wake&) = delete;
-  Wake& operator=(const Wake&) = delete;
 
   void signal();
   void clear();

@@ -95,8 +95,7 @@ class MemoryWriter : public RawWriter {
  public:
   explicit MemoryWriter(Common common);
   ~MemoryWriter() override;
-  MemoryWriter(const MemoryWriter&) = delete;
-  MemoryWriter& operator=(const MemoryWriter&) = delete;
+  MemoryWriter& operator=(MemoryWriter&&) = delete;
 
   void set_sender(const std::shared_ptr<const Identity>& of) override { sender = of; }
   bool write(const void* sample) override { return put(sample, false); }
@@ -122,8 +121,7 @@ class MemoryReader : public RawReader {
  public:
   explicit MemoryReader(Common common);
   ~MemoryReader() override;
-  MemoryReader(const MemoryReader&) = delete;
-  MemoryReader& operator=(const MemoryReader&) = delete;
+  MemoryReader& operator=(MemoryReader&&) = delete;
 
   void take(const std::function<void(const void*, const SampleInfo&)>& each) override;
   std::vector<WriterId> take_lost() override;

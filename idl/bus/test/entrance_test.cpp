@@ -21,9 +21,8 @@ class Door : public saphira::test::LinePlayer {
  public:
   Door() : entrance_(std::in_place, 1) {
     events_ = {
-        {"seal", [this](auto& in) { entrance_.emplace(1, seal(rest(in))); }},
-        {"announce",
-         [this](auto& in) { expect(in, entrance_->announced(who(in), kAddress, now_)); }},
+        ON("seal", entrance_.emplace(1, seal(rest(in)))),
+        ON("announce", expect(in, entrance_->announced(who(in), kAddress, now_))),
         {"sealed",
          [this](auto& in) {
            const Entrance::Prefix prefix = who(in);
@@ -31,8 +30,8 @@ class Door : public saphira::test::LinePlayer {
            const Entrance::Sealed sealed{time, seconds(read<int>(in))};
            expect(in, entrance_->announced(prefix, kAddress, now_, sealed));
          }},
-        {"shake", [this](auto& in) { expect(in, entrance_->shakes_hands(who(in), now_)); }},
-        {"send", [this](auto& in) { expect(in, entrance_->sends(who(in), now_)); }},
+        ON("shake", expect(in, entrance_->shakes_hands(who(in), now_))),
+        ON("send", expect(in, entrance_->sends(who(in), now_))),
         {"door",
          [this](auto& in) {
            const Entrance::Prefix prefix = who(in);
@@ -41,17 +40,17 @@ class Door : public saphira::test::LinePlayer {
            ASSERT_EQ(entrance_->announced(prefix, kAddress, now_), Fate::waits);
            entrance_->found(prefix);
          }},
-        {"found", [this](auto& in) { entrance_->found(who(in)); }},
-        {"let-in", [this](auto& in) { entrance_->let_in(who(in)); }},
-        {"refuse", [this](auto& in) { entrance_->refuse(who(in)); }},
-        {"forget", [this](auto& in) { entrance_->forget(who(in), now_); }},
-        {"after", [this](auto& in) { after(in); }},
+        ON("found", entrance_->found(who(in))),
+        ON("let-in", entrance_->let_in(who(in))),
+        ON("refuse", entrance_->refuse(who(in))),
+        ON("forget", entrance_->forget(who(in), now_)),
+        ON("after", after(in)),
     };
-    facts_ = {{"in", [this] { return std::string(entrance_->is_in(program(1)) ? "1" : ""); }},
-              {"from 1", [this] { return entrance_->address_of(program(1)); }},
-              {"from 2", [this] { return entrance_->address_of(program(2)); }},
-              {"strangers", [this] { return entrance_->strangers(now_); }},
-              {"named", [this] { return std::to_string(entrance_->take_new_strangers().size()); }}};
+    facts_ = {IS("in", std::string(entrance_->is_in(program(1)) ? "1" : "")),
+              IS("from 1", entrance_->address_of(program(1))),
+              IS("from 2", entrance_->address_of(program(2))),
+              IS("strangers", entrance_->strangers(now_)),
+              IS("named", std::to_string(entrance_->take_new_strangers().size()))};
   }
 
  private:

@@ -39,8 +39,6 @@ struct Liar::Impl {
     ticks = {};
     presence.close(session);
   }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
   Impl(Impl&&) = delete;
   Impl& operator=(Impl&&) = delete;
 

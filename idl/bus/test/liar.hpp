@@ -13,8 +13,6 @@ class Liar {
  public:
   Liar(const NodeOptions& options, std::string allowed_topic);
   ~Liar();
-  Liar(const Liar&) = delete;
-  Liar& operator=(const Liar&) = delete;
 
   /// A writer or reader of the topic, as everybody else's. False where it could not be made.
   bool add(const std::string& topic, bool writes);

@@ -45,22 +45,22 @@ class Presences : public saphira::test::LinePlayer {
     peers_.expect(program("1"));
     peers_.tick({program("1")});
     wake_->clear();
-    events_ = {{"tick", [this](auto& in) { tick(1, in); }},
-               {"silence", [this](auto& in) { tick(ticks(read<std::string>(in)), in); }},
-               {"hears", [this](auto& in) { tick(ticks(read<std::string>(in)), in); }},
-               {"match", [this](auto& in) { peers_.match(ends_, end_of(rest(in))); }},
-               {"unmatch", [this](auto& in) { peers_.unmatch(ends_, end_of(rest(in))); }},
-               {"expect", [this](auto& in) { peers_.expect(program(rest(in))); }},
-               {"join", [this](auto& in) { peers_.join(program(rest(in))); }},
-               {"leave", [this](auto& in) { peers_.leave(program(rest(in))); }},
-               {"forget", [this](auto& in) { peers_.forget(program(rest(in))); }},
-               {"restart", [this](auto&) { peers_.restart(ends_); }}};
-    facts_ = {{"present", [this] { return std::to_string(ends_.present()); }},
-              {"lost", [this] { return in_words(peers_.take_lost(ends_)); }},
-              {"returned", [this] { return in_words(peers_.take_returned(ends_)); }},
-              {"any absent", [this] { return yes(peers_.any_absent(ends_)); }},
-              {"absent", [this] { return absent(); }},
-              {"wakes", [this] { return wakes(); }}};
+    events_ = {ON("tick", tick(1, in)),
+               ON("silence", tick(ticks(read<std::string>(in)), in)),
+               ON("hears", tick(ticks(read<std::string>(in)), in)),
+               ON("match", peers_.match(ends_, end_of(rest(in)))),
+               ON("unmatch", peers_.unmatch(ends_, end_of(rest(in)))),
+               ON("expect", peers_.expect(program(rest(in)))),
+               ON("join", peers_.join(program(rest(in)))),
+               ON("leave", peers_.leave(program(rest(in)))),
+               ON("forget", peers_.forget(program(rest(in)))),
+               ON("restart", peers_.restart(ends_))};
+    facts_ = {IS("present", std::to_string(ends_.present())),
+              IS("lost", in_words(peers_.take_lost(ends_))),
+              IS("returned", in_words(peers_.take_returned(ends_))),
+              IS("any absent", yes(peers_.any_absent(ends_))),
+              IS("absent", absent()),
+              IS("wakes", wakes())};
   }
 
  private:

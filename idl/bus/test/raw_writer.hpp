@@ -14,8 +14,6 @@ class RawWriter {
   RawWriter(const std::string& robot, const std::string& topic, const std::string& type,
             bool keyed);
   ~RawWriter();
-  RawWriter(const RawWriter&) = delete;
-  RawWriter& operator=(const RawWriter&) = delete;
 
   bool matched() const;
   bool write(std::vector<std::uint8_t> bytes);

@@ -1,26 +1,21 @@
 #include "agent_interface/shell/convert.hpp"
 
 #include "requests/shell/convert.hpp"
-#include "saphira/base/enum_pairs.hpp"
+#include "saphira/base/namesakes.hpp"
 #include "saphira/bus/agent.hpp"
 
 namespace saphira::agent_interface {
 namespace {
 
 constexpr double kUnlimited = 1e12;
-constexpr auto kKinds = pairs_by_name<TriggerKind, v1::TriggerKind>();
 
 Parameter from_bus(const v1::CapabilityParameter& parameter) {
-  Parameter result;
-  result.name = parameter.name;
+  auto result = translated<Parameter>(parameter);
   result.kind = saphira::from_bus(parameter.kind);
-  result.meaning = parameter.meaning;
-  result.required = parameter.required;
+  result.frame = saphira::from_bus(parameter.frame);
   const bool limited = parameter.low != 0.0 || parameter.high != 0.0;
   result.low = limited ? parameter.low : -kUnlimited;
   result.high = limited ? parameter.high : kUnlimited;
-  result.choices = parameter.choices;
-  result.frame = saphira::from_bus(parameter.frame);
   return result;
 }
 
@@ -40,7 +35,7 @@ AgentInfo from_bus(const v1::Agent& agent) {
 Trigger from_bus(const v1::Trigger& trigger) {
   return {{trigger.id.writer, trigger.id.number},
           trigger.source,
-          kKinds.ours(trigger.kind, TriggerKind::event),
+          kPairs<TriggerKind, v1::TriggerKind>.ours(trigger.kind, TriggerKind::event),
           trigger.period,
           trigger.condition,
           saphira::from_bus(trigger.condition_arguments),
@@ -51,14 +46,11 @@ Trigger from_bus(const v1::Trigger& trigger) {
 }
 
 v1::Advice to_bus(const Advice& advice) {
-  return {.number = static_cast<std::uint32_t>(advice.number),
-          .functor = describe(advice.kind),
-          .arguments = {bus::text("about", advice.about), bus::text("value", advice.value)},
-          .words = describe(advice),
-          .speaker = advice.speaker,
-          .said = advice.said,
-          .time = advice.time,
-          .artifact = advice.artifact};
+  auto result = translated<v1::Advice>(advice);
+  result.functor = describe(advice.kind);
+  result.arguments = {bus::text("about", advice.about), bus::text("value", advice.value)};
+  result.words = describe(advice);
+  return result;
 }
 
 }  // namespace saphira::agent_interface

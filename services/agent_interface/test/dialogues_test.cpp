@@ -153,96 +153,69 @@ class Conversation : public DialogueTest {
   std::string map_ = kMap;
   std::string grammar_ = read_file(test::source("config/grammars/flakey.grammar"));
   const std::map<std::string, std::function<std::string()>> facts_{
-      {"goals", [this] { return goals(); }},
-      {"functor", [this] { return last.goals.at(0).functor; }},
-      {"priority", [this] { return std::to_string(last.goals.at(0).priority); }},
-      {"lasting", [this] { return yes(last.goals.at(0).lasting); }},
-      {"canceled", [this] { return canceled(); }},
-      {"why", [this] { return last.why; }},
-      {"claims", [this] { return claims(last.claims); }},
-      {"all claims", [this] { return claims(dialogue.claims()); }},
-      {"source", [this] { return last.claims.at(0).source; }},
-      {"namings", [this] { return namings(); }},
-      {"answers", [this] { return std::to_string(last.said.at(0).answers.second); }},
-      {"end", [this] { return yes(last.said.at(0).end); }},
-      {"refused", [this] { return yes(last.said.at(0).refused); }},
-      {"note", [this] { return last.note; }},
-      {"changed", [this] { return yes(last.changed); }},
+      IS("goals", goals()),
+      IS("functor", last.goals.at(0).functor),
+      IS("priority", std::to_string(last.goals.at(0).priority)),
+      IS("lasting", yes(last.goals.at(0).lasting)),
+      IS("canceled", canceled()),
+      IS("why", last.why),
+      IS("claims", claims(last.claims)),
+      IS("all claims", claims(dialogue.claims())),
+      IS("source", last.claims.at(0).source),
+      IS("namings", namings()),
+      IS("answers", std::to_string(last.said.at(0).answers.second)),
+      IS("end", yes(last.said.at(0).end)),
+      IS("refused", yes(last.said.at(0).refused)),
+      IS("note", last.note),
+      IS("changed", yes(last.changed)),
       {"answer to the program",
        [this] {
          const Answer answer = dialogue.place_of("karen");
          return answer.code == AnswerCode::done ? describe(answer.results) : answer.text;
        }},
-      {"facts", [this] { return std::to_string(dialogue.knowledge().all().size()); }},
-      {"doorway", [this] { return std::to_string(dialogue.knowledge().all().at(0).artifact); }},
-      {"place of karen", [this] { return dialogue.knowledge().place_of("karen"); }}};
-  const std::map<std::string, std::function<void(const std::string&)>> changes_{
-      {"done",
-       [this](const auto& text) {
-         last = dialogue.ended({wanted_, true, text});
-       }},
-      {"failed",
-       [this](const auto& text) {
-         last = dialogue.ended({wanted_, false, text});
-       }},
-      {"activity",
-       [this](const auto& text) {
-         last = dialogue.says(text, {3, ++said_});
-       }},
-      {"seconds pass",
-       [this](const auto& text) {
-         situation.now = now += std::stod(text);
-         last = dialogue.come_due(situation);
-       }},
-      {"stop", [this](const auto& text) { granted(text); }},
-      {"driven by another", [this](const auto& text) { situation.is_driven = text == "yes"; }},
-      {"restart", [this](const auto&) { restart(); }},
-      {"anew", [this](const auto&) { use(Dialogue{grammar()}); }},
-      {"asks about", [this](const auto& text) { situation.asked_about = text; }},
-      {"asks for", [this](const auto& text) { situation.asked_for = text; }},
-      {"carries",
-       [this](const auto& text) {
-         situation.carried = {{text, "EJ-231"}};
-       }},
-      {"goals are", [this](const auto& text) { know_goals(text); }},
-      {"its step", [this](const auto& text) { situation.goals.back().step = text; }},
-      {"its arguments",
-       [this](const auto& text) {
-         std::istringstream in(text);
-         for (std::string name, value;
-              std::getline(std::getline(in >> std::ws, name, '='), value, '"') &&
-              std::getline(in, value, '"');)
-           situation.goals.back().arguments.push_back(saphira::text(name, value));
-       }},
-      {"its note", [this](const auto& text) { situation.goals.back().note = text; }},
-      {"its reason", [this](const auto& text) { situation.goals.back().reason = text; }},
-      {"seconds on the way", [this](const auto& text) { ago_ = std::stod(text); }},
-      {"without times", [this](const auto&) { knows_time_ = false; }},
-      {"forget",
-       [this](const auto& text) {
-         last = dialogue.forget(std::stod(text));
-         last.said = {{{}, "", last.answer.text}};
-       }},
-      {"nameless corridors",
-       [this](const auto&) {
-         for (maps::Feature& feature : situation.map.features)
-           if (feature.type == lps::PointType::corridor)
-             feature.name.clear();
-       }},
-      {"slow", [this](const auto& text) { situation.is_slow = text == "yes"; }},
-      {"its goal", [this](const auto& text) { own_goal(text); }},
-      {"goal of another", [this](const auto& text) { others_goal(text); }},
-      {"no goals", [this](const auto&) { situation.goals.clear(); }},
-      {"emergency stop", [this](const auto& text) { situation.estop = text; }},
-      {"turns cameras", [this](const auto& text) { situation.turns_cameras = text == "yes"; }},
-      {"at", [this](const auto& text) { situation.pose_in_map = pose_of(text); }},
-      {"is lost", [this](const auto&) { situation.pose_in_map.reset(); }},
-      {"points", [this](const auto& text) { situation.pointing_in_map = pose_of(text); }},
-      {"no map", [this](const auto&) { situation.map = {}; }},
-      {"map",
-       [this](const auto& text) { situation.map = maps::parse_map(map_ += text + "\n", "map"); }},
-      {"grammar", [this](const auto& text) { grammar_ += text + "\n"; }},
-      {"new grammar", [this](const auto&) { dialogue.use(Grammar(grammar_, "grammar")); }}};
+      IS("facts", std::to_string(dialogue.knowledge().all().size())),
+      IS("doorway", std::to_string(dialogue.knowledge().all().at(0).artifact)),
+      IS("place of karen", dialogue.knowledge().place_of("karen"))};
+  const std::map<std::string, std::function<void(const std::string&)>> changes_ = {
+    ON("done", last = dialogue.ended({wanted_, true, in})),
+        ON("failed", last = dialogue.ended({wanted_, false, in})),
+        ON("activity", last = dialogue.says(in, {3, ++said_})),
+        ON("seconds pass", situation.now = now += std::stod(in);
+           last = dialogue.come_due(situation)),
+        ON("stop", granted(in)), ON("driven by another", situation.is_driven = in == "yes"),
+        ON("restart", restart()), ON("anew", use(Dialogue{grammar()})),
+        ON("asks about", situation.asked_about = in), ON("asks for", situation.asked_for = in),
+        ON("carries", situation.carried = {{in, "EJ-231"}}), ON("goals are", know_goals(in)),
+        ON("its step", situation.goals.back().step = in),
+        {"its arguments",
+         [this](const auto& text) {
+           std::istringstream in(text);
+           for (std::string name, value;
+                std::getline(std::getline(in >> std::ws, name, '='), value, '"') &&
+                std::getline(in, value, '"');)
+             situation.goals.back().arguments.push_back(saphira::text(name, value));
+         }},
+        ON("its note", situation.goals.back().note = in),
+        ON("its reason", situation.goals.back().reason = in),
+        ON("seconds on the way", ago_ = std::stod(in)), ON("without times", knows_time_ = false),
+        ON("forget", last = dialogue.forget(std::stod(in));
+           last.said = {{{}, "", last.answer.text}}),
+        {"nameless corridors",
+         [this](const auto&) {
+           for (maps::Feature& feature : situation.map.features)
+             if (feature.type == lps::PointType::corridor)
+               feature.name.clear();
+         }},
+        ON("slow", situation.is_slow = in == "yes"), ON("its goal", own_goal(in)),
+        ON("goal of another", others_goal(in)), ON("no goals", situation.goals.clear()),
+        ON("emergency stop", situation.estop = in),
+        ON("turns cameras", situation.turns_cameras = in == "yes"),
+        ON("at", situation.pose_in_map = pose_of(in)), ON("is lost", situation.pose_in_map.reset()),
+        ON("points", situation.pointing_in_map = pose_of(in)), ON("no map", situation.map = {}),
+        ON("map", situation.map = maps::parse_map(map_ += in + "\n", "map")),
+        ON("grammar", grammar_ += in + "\n"),
+        ON("new grammar", dialogue.use(Grammar(grammar_, "grammar")))
+  };
 };
 
 TEST(Dialogues, AreAsWritten) {

@@ -216,58 +216,50 @@ class Round {
   std::string heard_;
 
   using Event = std::function<void(std::istringstream&)>;
-  const std::map<std::string, Event> events_{
-      {"member",  // who writes what follows
-       [this](auto& in) { member_ = identity_of(read<std::string>(in)); }},
-      {"agent", [this](auto& in) { announce(in); }},
-      {"leaves", [this](auto& in) { facilitator_.leave(read<std::uint64_t>(in), member_); }},
-      {"ask", [this](auto& in) { ask(in); }},
-      {"answer",  // to the newest request
-       [this](auto& in) {
-         facilitator_.hear(asked_.service, asked_.asker, asked_.number, answer_of(in), now_);
-       }},
-      {"hear",
-       [this](auto& in) {
-         const auto name = read<std::string>(in);
-         const auto number = read<std::uint64_t>(in);
-         facilitator_.hear("address of " + name, 1, number, answer_of(in), now_, member_);
-       }},
-      {"stranger",  // an answer from an address that no agent has
-       [this](auto& in) {
-         const auto address = read<std::string>(in);
-         const auto number = read<std::uint64_t>(in);
-         facilitator_.hear(address, 1, number, answer_of(in), now_);
-       }},
-      {"pass", [this](auto& in) { now_ += read<double>(in); }},
-      {"until-due", [this](auto&) { now_ = facilitator_.due().value_or(-1.0); }},
-      {"restart", [this](auto& in) { restart(read<double>(in)); }},
-      {"trigger", [this](auto& in) { trigger(in); }},
-      {"take-back", [this](auto& in) { facilitator_.take_back(id_of(read<std::string>(in))); }},
-      {"miss", [this](auto& in) { facilitator_.miss(id_of(read<std::string>(in))); }},
-      {"call-off", [this](auto& in) { facilitator_.call_off(id_of(read<std::string>(in))); }},
-      {"event",
-       [this](auto& in) {
-         const auto functor = read<std::string>(in);
-         facilitator_.happened(functor, arguments_of(in), now_);
-       }},
-      {"may-change",
-       [this](auto& in) {
-         const auto id = id_of(read<std::string>(in));
-         answer_ = yes(facilitator_.may_change(id, identity_of(read<std::string>(in))));
-       }},
-      {"run", [this](auto& in) { run(in); }}};
+  const std::map<std::string, Event> events_ {
+    {"member",  // who writes what follows
+     [this](auto& in) { member_ = identity_of(read<std::string>(in)); }},
+        ON("agent", announce(in)),
+        ON("leaves", facilitator_.leave(read<std::uint64_t>(in), member_)), ON("ask", ask(in)),
+        {"answer",  // to the newest request
+         [this](auto& in) {
+           facilitator_.hear(asked_.service, asked_.asker, asked_.number, answer_of(in), now_);
+         }},
+        {"hear",
+         [this](auto& in) {
+           const auto name = read<std::string>(in);
+           const auto number = read<std::uint64_t>(in);
+           facilitator_.hear("address of " + name, 1, number, answer_of(in), now_, member_);
+         }},
+        {"stranger",  // an answer from an address that no agent has
+         [this](auto& in) {
+           const auto address = read<std::string>(in);
+           const auto number = read<std::uint64_t>(in);
+           facilitator_.hear(address, 1, number, answer_of(in), now_);
+         }},
+        ON("pass", now_ += read<double>(in)),
+        ON("until-due", now_ = facilitator_.due().value_or(-1.0)),
+        ON("restart", restart(read<double>(in))), ON("trigger", trigger(in)),
+        ON("take-back", facilitator_.take_back(id_of(read<std::string>(in)))),
+        ON("miss", facilitator_.miss(id_of(read<std::string>(in)))),
+        ON("call-off", facilitator_.call_off(id_of(read<std::string>(in)))),
+        ON("event", const auto functor = read<std::string>(in);
+           facilitator_.happened(functor, arguments_of(in), now_)),
+        ON("may-change", const auto id = id_of(read<std::string>(in));
+           answer_ = yes(facilitator_.may_change(id, identity_of(read<std::string>(in))))),
+        ON("run", run(in))
+  };
   const std::map<std::string, std::function<std::string()>> facts_{
-      {"open", [this] { return std::to_string(facilitator_.open()); }},
-      {"due", [this] { return std::to_string(std::lround(facilitator_.due().value_or(-1.0))); }},
-      {"fired", [this] { return std::to_string(fired_); }},
-      {"changed", [this] { return yes(out_.changed); }},
-      {"remembers nothing", [this] { return yes(saved(facilitator_) == saved(Facilitator(9))); }},
-      {"asked as",
-       [this] { return std::to_string(asked_.asker) + ":" + std::to_string(asked_.number); }},
-      {"deadline", [this] { return std::to_string(std::lround(asked_.deadline)); }},
-      {"warnings", [this] { return joined(out_.warnings, " | "); }},
-      {"notes", [this] { return joined(out_.notes, " | "); }},
-      {"audit", [this] { return audit(); }}};
+      IS("open", std::to_string(facilitator_.open())),
+      IS("due", std::to_string(std::lround(facilitator_.due().value_or(-1.0)))),
+      IS("fired", std::to_string(fired_)),
+      IS("changed", yes(out_.changed)),
+      IS("remembers nothing", yes(saved(facilitator_) == saved(Facilitator(9)))),
+      IS("asked as", std::to_string(asked_.asker) + ":" + std::to_string(asked_.number)),
+      IS("deadline", std::to_string(std::lround(asked_.deadline))),
+      IS("warnings", joined(out_.warnings, " | ")),
+      IS("notes", joined(out_.notes, " | ")),
+      IS("audit", audit())};
 };
 
 TEST(Requests, AreAsWritten) {

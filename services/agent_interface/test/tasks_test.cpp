@@ -43,29 +43,21 @@ class Errands : public test::LinePlayer {
  public:
   Errands() {
     events_ = {
-        {"want", [this](auto& in) { want(in, false); }},
-        {"want-and-drop", [this](auto& in) { want(in, true); }},
-        {"agree", [this](auto&) { told(tasks_.want(asks_, said_, true)); }},
-        {"go-on",
-         [this](auto& in) {
-           said_ = words(in);
-           told(tasks_.go_on(said_));
-         }},
-        {"done", [this](auto& in) { end(in, true); }},
-        {"failed", [this](auto& in) { end(in, false); }},
-        {"left",
-         [this](auto& in) { told(tasks_.left({static_cast<std::uint8_t>(read<int>(in))})); }},
-        {"sent",
-         [this](auto& in) {
-           tasks_.asked(read<std::uint64_t>(in), {40, 2}, "it");
-         }},
-        {"restart", [this](auto&) { restart(); }},
-        {">", [this](auto& in) { next(rest(in)); }}};
-    facts_ = {{"doing", [this] { return doing(tasks_); }},
-              {"asks", [this] { return std::to_string(asks_.size()); }},
-              {"spoken for", [this] { return std::to_string(tasks_.spoken_for().second); }},
-              {"bob goes on", [this] { return tasks_.going_on("bob"); }},
-              {"alice goes on", [this] { return tasks_.going_on("alice"); }}};
+      ON("want", want(in, false)),
+      ON("want-and-drop", want(in, true)),
+      ON("agree", told(tasks_.want(asks_, said_, true))),
+      ON("go-on", said_ = words(in); told(tasks_.go_on(said_))),
+      ON("done", end(in, true)),
+      ON("failed", end(in, false)),
+      ON("left", told(tasks_.left({static_cast<std::uint8_t>(read<int>(in))}))),
+      ON("sent", tasks_.asked(read<std::uint64_t>(in), {40, 2}, "it")),
+      ON("restart", restart()),
+      ON(">", next(rest(in)))
+    };
+    facts_ = {IS("doing", doing(tasks_)), IS("asks", std::to_string(asks_.size())),
+              IS("spoken for", std::to_string(tasks_.spoken_for().second)),
+              IS("bob goes on", tasks_.going_on("bob")),
+              IS("alice goes on", tasks_.going_on("alice"))};
   }
   void finish() { EXPECT_EQ(next_, told_.size()) << "not expected: " << told_.at(next_); }
 

@@ -79,27 +79,27 @@ class Intentions : public test::LinePlayer, private Executed {
                    throw std::runtime_error("no camera");
                  }});
     schemas.add({"Nothing", "", {}, []() -> std::unique_ptr<Behavior> { return nullptr; }});
-    events_ = {{"none", [this](auto&) { set_.clear(); }},
-               {"with", [this](auto& in) { intend(in, true); }},
-               {"off", [this](auto& in) { intend(in, false); }},
-               {"step", [this](auto&) { now_ = step(set_); }},
-               {"step-without-control", [this](auto&) { now_ = step(set_, false); }},
-               {"moves", [this](auto& in) { robot_.velocity = read<double>(in); }},
-               {"reset", [this](auto&) { executive_.reset(); }},
-               {"inactive", [this](auto& in) { expect_like(now_.inactive_reason, rest(in)); }},
-               {"trouble", [this](auto& in) { expect_like(now_.trouble, rest(in)); }},
-               {"missing", [this](auto& in) { expect_like(missing(), rest(in)); }}};
-    facts_ = {{"made", [this] { return std::to_string(counts_.made); }},
-              {"inits", [this] { return std::to_string(counts_.inits); }},
-              {"updates", [this] { return std::to_string(counts_.updates); }},
-              {"value", [this] { return decimal(counts_.last, 3); }},
-              {"active", [this] { return yes(now_.active); }},
-              {"moving", [this] { return yes(now_.blend.moving); }},
-              {"blend", [this] { return decimal(now_.blend.speed, 3); }},
-              {"speed", [this] { return decimal(now_.speed, 3); }},
-              {"contact", [this] { return decimal(now_.contact_speed, 3); }},
-              {"heading", [this] { return decimal(degrees(now_.heading_in_odom), 3); }},
-              {"behaviors", [this] { return behaviors(); }}};
+    events_ = {ON("none", set_.clear()),
+               ON("with", intend(in, true)),
+               ON("off", intend(in, false)),
+               ON("step", now_ = step(set_)),
+               ON("step-without-control", now_ = step(set_, false)),
+               ON("moves", robot_.velocity = read<double>(in)),
+               ON("reset", executive_.reset()),
+               ON("inactive", expect_like(now_.inactive_reason, rest(in))),
+               ON("trouble", expect_like(now_.trouble, rest(in))),
+               ON("missing", expect_like(missing(), rest(in)))};
+    facts_ = {IS("made", std::to_string(counts_.made)),
+              IS("inits", std::to_string(counts_.inits)),
+              IS("updates", std::to_string(counts_.updates)),
+              IS("value", decimal(counts_.last, 3)),
+              IS("active", yes(now_.active)),
+              IS("moving", yes(now_.blend.moving)),
+              IS("blend", decimal(now_.blend.speed, 3)),
+              IS("speed", decimal(now_.speed, 3)),
+              IS("contact", decimal(now_.contact_speed, 3)),
+              IS("heading", decimal(degrees(now_.heading_in_odom), 3)),
+              IS("behaviors", behaviors())};
   }
 
  private:

@@ -4,6 +4,7 @@
 
 #include "pioneer.hpp"
 #include "saphira/base/text.hpp"
+#include "trouble.hpp"
 
 namespace saphira::behaviors {
 namespace {
@@ -34,13 +35,8 @@ TEST(Plugin, TheExampleRunsAmongTheOthers) {
 
 TEST(Plugin, WhatIsNoPluginIsSaidToBeNone) {
   Registry registry;
-  const auto message = [&](const std::string& path) -> std::string {
-    try {
-      load_plugin(path, registry);
-    } catch (const UnusableFile& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [&](const std::string& path) {
+    return test::trouble_of<UnusableFile>([&] { load_plugin(path, registry); });
   };
   EXPECT_NE(message("/nowhere/x.so").find("/nowhere/x.so: expected a plug-in of behaviors"),
             std::string::npos);

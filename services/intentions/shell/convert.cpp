@@ -6,13 +6,12 @@
 
 #include "lps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
-#include "saphira/base/enum_pairs.hpp"
 #include "saphira/bus/sender.hpp"
 
-namespace saphira::intentions {
-namespace {
+namespace saphira {
 
-constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{
+template <>
+constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kPairs<ArgumentKind, v1::ParameterKind>{
     {{
         {ArgumentKind::number, v1::PARAMETER_NUMBER},
         {ArgumentKind::text, v1::PARAMETER_TEXT},
@@ -22,59 +21,44 @@ constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{
     {v1::PARAMETER_ANY}};
 // The bus does not separate the first step after a suspension from the following ones; a removed
 // intention does not appear there.
-constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
+using State = intentions::IntentionState;
+template <>
+constexpr EnumPairs<State, v1::IntentionState, 8> kPairs<State, v1::IntentionState>{
     {{
-        {IntentionState::kInit, v1::INTENTION_INIT},
-        {IntentionState::kRunning, v1::INTENTION_RUNNING},
-        {IntentionState::kResumed, v1::INTENTION_RUNNING},
-        {IntentionState::kSuspended, v1::INTENTION_SUSPENDED},
-        {IntentionState::kInterrupted, v1::INTENTION_INTERRUPTED},
-        {IntentionState::kSuccess, v1::INTENTION_SUCCESS},
-        {IntentionState::kFailure, v1::INTENTION_FAILURE},
-        {IntentionState::kTimeout, v1::INTENTION_TIMEOUT},
+        {State::kInit, v1::INTENTION_INIT},
+        {State::kRunning, v1::INTENTION_RUNNING},
+        {State::kResumed, v1::INTENTION_RUNNING},
+        {State::kSuspended, v1::INTENTION_SUSPENDED},
+        {State::kInterrupted, v1::INTENTION_INTERRUPTED},
+        {State::kSuccess, v1::INTENTION_SUCCESS},
+        {State::kFailure, v1::INTENTION_FAILURE},
+        {State::kTimeout, v1::INTENTION_TIMEOUT},
     }},
-    {IntentionState::kRemoved}};
+    {State::kRemoved}};
+
+namespace intentions {
+namespace {
 
 constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
 constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
 
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
-  return {.name = behavior.name,
-          .schema = behavior.schema,
-          .priority = behavior.priority,
-          .running = behavior.running,
-          .parameters = saphira::to_bus(behavior.parameters),
-          .intention = behavior.intention,
-          .blocking = behavior.blocking};
+  auto result = translated<v1::IntendedBehavior>(behavior);
+  result.parameters = saphira::to_bus(behavior.parameters);
+  return result;
 }
 
 v1::IntentionNode to_bus(const IntentionNode& node, const Executor& executor) {
-  return {.id = node.id,
-          .parent = node.parent,
-          .name = node.name,
-          .schema = node.schema,
-          .arguments = node.arguments,
-          .state = kIntentionStates.theirs(node.state),
-          .blocking = node.blocking,
-          .label = node.label,
-          .step = node.step,
-          .since = executor.cycle_of(node.since),
-          .priority = node.priority,
-          .goal = node.goal};
+  auto result = translated<v1::IntentionNode>(node);
+  result.since = executor.cycle_of(node.since);
+  return result;
 }
 
 }  // namespace
 
 Goal from_bus(const v1::Goal& goal) {
-  Goal result;
-  result.id = goal.id;
-  result.requester = goal.requester;
-  result.functor = goal.functor;
+  auto result = translated<Goal>(goal);
   result.arguments = saphira::from_bus(goal.arguments);
-  result.priority = goal.priority;
-  result.deadline = goal.deadline;
-  result.level = goal.level;
-  result.writer_lost = goal.writer_lost;
   return result;
 }
 
@@ -135,19 +119,9 @@ Core::Vision from_bus(const v1::Vision& vision) {
 }
 
 Robot from_bus(const v1::RobotState& robot) {
-  Robot result;
+  auto result = translated<Robot>(robot);
   result.connected = robot.status != v1::MOTORS_NOT_CONNECTED;
   result.has_power = robot.status != v1::MOTORS_NO_POWER;
-  result.odom = robot.odom;
-  result.pose_in_odom = lps::from_bus(robot.pose_in_odom);
-  result.velocity = robot.velocity;
-  result.rotation_velocity = robot.rotation_velocity;
-  result.head = robot.head;
-  result.left_stalled = robot.left_stalled;
-  result.right_stalled = robot.right_stalled;
-  result.bumpers = robot.bumpers;
-  result.target_velocity = robot.target_velocity;
-  result.target_heading_in_odom = robot.target_heading_in_odom;
   return result;
 }
 
@@ -181,12 +155,9 @@ std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors) {
 
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
   const auto parameter = [](const v1::BehaviorParameter& given) {
-    Parameter result;
-    result.name = given.name;
+    auto result = translated<Parameter>(given);
     result.kind = saphira::from_bus(given.kind);
-    result.low = given.low;
-    result.high = given.high;
-    result.required = given.required;
+    result.usual.reset();
     return result;
   };
   return converted(schemas.schemas, [&](const v1::BehaviorSchema& schema) {
@@ -198,13 +169,9 @@ v1::ActivitySchema to_bus(const Schema& schema) {
   v1::ActivitySchema result{
       .name = schema.name, .summary = schema.summary, .source = schema.source};
   for (const Parameter& parameter : schema.parameters) {
-    v1::ActivityParameter out{
-        .name = parameter.name,
-        .kind = parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind),
-        .unit = parameter.unit,
-        .required = parameter.required,
-        .low = parameter.low,
-        .high = parameter.high};
+    auto out = translated<v1::ActivityParameter>(parameter);
+    if (parameter.any)
+      out.kind = v1::PARAMETER_ANY;
     if (parameter.usual)
       out.usual = plain(*parameter.usual);
     else if (parameter.usual_text)
@@ -228,14 +195,9 @@ ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {
 }
 
 Registered registered_from_bus(const v1::Registration& registration, std::uint64_t cycle) {
-  Registered result;
   if (registration.stamp.cycle + kRegistrationLease < cycle)
-    return result;
-  result.state = registration.state;
-  result.pose_in_map = lps::from_bus(registration.pose_in_map);
-  result.confidence = registration.confidence;
-  result.environment = registration.environment;
-  result.adds_features = registration.adds_features;
+    return {};
+  auto result = translated<Registered>(registration);
   result.closed_doors.insert(registration.closed_doors.begin(), registration.closed_doors.end());
   return result;
 }
@@ -259,4 +221,5 @@ std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception&
   return converted(perception.percepts, [](const auto& each) { return lps::from_bus(each); });
 }
 
-}  // namespace saphira::intentions
+}  // namespace intentions
+}  // namespace saphira

@@ -94,92 +94,73 @@ class Programs : public test::LinePlayer {
  public:
   Programs() {
     events_ = {
-        {"lockstep", [this](auto&) { settings_.lockstep = true; }},
-        {"models-need-approval",
-         [this](auto&) {
-           settings_.approval = {"", "language model", "guest"};
-         }},
-        {"ask", [this](auto& in) { now().goals.push_back(goal(in)); }},
-        {"begin",
-         [this](auto& in) {
-           now().goals.push_back(goal(in));
+      ON("lockstep", settings_.lockstep = true),
+      ON("models-need-approval", settings_.approval = {"", "language model", "guest"}),
+      ON("ask", now().goals.push_back(goal(in))),
+      ON("begin", now().goals.push_back(goal(in)); step(1)),
+      {"end",
+       [this](auto& in) {
+         now().goals.push_back(goal(in));
+         now().goals.back().event.kind = GoalEvent::Kind::kDisposed;
+         step(1);
+       }},
+      ON("lose", now().lost_requesters = now().lost_claimants = {writer_of(rest(in))}),
+      ON("grant", grant(in)),
+      ON("own-stop", site_.inputs.own_stop = stop_of(rest(in))),
+      ON("claim", claim(in)),
+      ON("running", now().running = read<double>(in)),
+      ON("step", step(in >> std::ws && !in.eof() ? read<int>(in) : 1)),
+      {"run",
+       [this](auto& in) {
+         const auto id = read<std::uint64_t>(in);
+         for (int left = read<int>(in); left > 0 && !ended(site_.state(id)); --left)
            step(1);
+       }},
+      ON("between", between(read<double>(in))),
+      ON("behaviors-fall-silent", site_.silent = true),
+      ON("suspend", core().processes().find("execute-intentions")->suspend()),
+      ON("resume", core().processes().find("execute-intentions")->resume()),
+      ON("tell", tell(in)),
+      ON("activity", activity(in)),
+      ON("no-activity", now().activities = ActivityFolders::Reload{true, {}, {rest(in)}, {}, {}}),
+      ON("map", map(in)),
+      ON("map-revision", site_.inputs.map_revision = read<std::uint64_t>(in)),
+      ON("odom-in-map", site_.inputs.robot.odom_in_map = test::pose_of(rest(in))),
+      {"registration",
+       [this](auto& in) {
+         const std::string state = rest(in);
+         site_.inputs.registered.state =
+             state == "lost" ? v1::REGISTRATION_LOST : v1::REGISTRATION_TRACKING;
+         if (state == "gone")
+           site_.inputs.registered.state.reset();
+         site_.inputs.registered.adds_features = state == "grows";
+       }},
+      ON("says",
+         expect_like(joined(notes_.lines(), " | ", [](const Note& one) { return one.text; }),
+                     rest(in)))
+    };
+    facts_ = {
+        IS("intends", yes(!out_.intended.behaviors.empty())),
+        IS("asks to stop", out_.intended.stop.value_or("nobody")),
+        {"heeds",
+         [this] {
+           const v1::StopId stop = core().executor().heeds();
+           return format("%d:%d", int(stop.asker), int(stop.number));
          }},
-        {"end",
-         [this](auto& in) {
-           now().goals.push_back(goal(in));
-           now().goals.back().event.kind = GoalEvent::Kind::kDisposed;
-           step(1);
-         }},
-        {"lose",
-         [this](auto& in) {
-           now().lost_requesters = now().lost_claimants = {writer_of(rest(in))};
-         }},
-        {"grant", [this](auto& in) { grant(in); }},
-        {"own-stop", [this](auto& in) { site_.inputs.own_stop = stop_of(rest(in)); }},
-        {"claim", [this](auto& in) { claim(in); }},
-        {"running", [this](auto& in) { now().running = read<double>(in); }},
-        {"step", [this](auto& in) { step(in >> std::ws && !in.eof() ? read<int>(in) : 1); }},
-        {"run",
-         [this](auto& in) {
-           const auto id = read<std::uint64_t>(in);
-           for (int left = read<int>(in); left > 0 && !ended(site_.state(id)); --left)
-             step(1);
-         }},
-        {"between", [this](auto& in) { between(read<double>(in)); }},
-        {"behaviors-fall-silent", [this](auto&) { site_.silent = true; }},
-        {"suspend", [this](auto&) { core().processes().find("execute-intentions")->suspend(); }},
-        {"resume", [this](auto&) { core().processes().find("execute-intentions")->resume(); }},
-        {"tell", [this](auto& in) { tell(in); }},
-        {"activity", [this](auto& in) { activity(in); }},
-        {"no-activity",
-         [this](auto& in) {
-           now().activities = ActivityFolders::Reload{true, {}, {rest(in)}, {}, {}};
-         }},
-        {"map", [this](auto& in) { map(in); }},
-        {"map-revision", [this](auto& in) { site_.inputs.map_revision = read<std::uint64_t>(in); }},
-        {"odom-in-map",
-         [this](auto& in) { site_.inputs.robot.odom_in_map = test::pose_of(rest(in)); }},
-        {"registration",
-         [this](auto& in) {
-           const std::string state = rest(in);
-           site_.inputs.registered.state =
-               state == "lost" ? v1::REGISTRATION_LOST : v1::REGISTRATION_TRACKING;
-           if (state == "gone")
-             site_.inputs.registered.state.reset();
-           site_.inputs.registered.adds_features = state == "grows";
-         }},
-        {"says", [this](auto& in) {
-           expect_like(joined(notes_.lines(), " | ", [](const Note& one) { return one.text; }),
-                       rest(in));
-         }}};
-    facts_ = {{"intends", [this] { return yes(!out_.intended.behaviors.empty()); }},
-              {"asks to stop", [this] { return out_.intended.stop.value_or("nobody"); }},
-              {"heeds",
-               [this] {
-                 const v1::StopId stop = core().executor().heeds();
-                 return format("%d:%d", int(stop.asker), int(stop.number));
-               }},
-              {"requester of 1", [this] { return site_.status(1).requester; }},
-              {"changed", [this] { return std::to_string(changed_); }},
-              {"answer", [this] { return answer_; }},
-              {"believed", [this] { return believed(false); }},
-              {"believed since", [this] { return believed(true); }},
-              {"audit",
-               [this] {
-                 return joined(out_.audit, ", ", [](const v1::AuditEntry& one) {
-                   return one.who + " " + std::string(v1::name_of(one.act)).substr(6);
-                 });
-               }},
-              {"asks registration",
-               [this] {
-                 return joined(out_.intended.requests, " ",
-                               [](const Request& one) { return one.functor; });
-               }},
-              {"edges", [this] { return std::to_string(out_.edges.size()); }},
-              {"nearest edge", [this] {
-                 return format("%.2f %.2f", out_.edges.at(0).from.y(), out_.edges.at(0).to.y());
-               }}};
+        IS("requester of 1", site_.status(1).requester),
+        IS("changed", std::to_string(changed_)),
+        IS("answer", answer_),
+        IS("believed", believed(false)),
+        IS("believed since", believed(true)),
+        IS("audit", joined(out_.audit, ", ",
+                           [](const v1::AuditEntry& one) {
+                             return one.who + " " + std::string(v1::name_of(one.act)).substr(6);
+                           })),
+        IS("asks registration",
+           joined(out_.intended.requests, " ", [](const Request& one) { return one.functor; })),
+        IS("edges", std::to_string(out_.edges.size())),
+        IS("nearest edge",
+           format("%.2f %.2f", out_.edges.at(0).from.y(), out_.edges.at(0).to.y()))};
   }
   void take(const std::string& line) {
     std::istringstream in(line);

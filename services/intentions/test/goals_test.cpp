@@ -28,60 +28,50 @@ class Desk : public test::LinePlayer {
   }
   Desk() {
     events_ = {
-        {"ask", [this](auto& in) { ask(in); }},
-        {"begin",
-         [this](auto& in) {
-           ask(in);
-           bench_->step();
-         }},
-        {"step",
-         [this](auto& in) { bench_->step(in >> std::ws && !in.eof() ? read<int>(in) : 1); }},
-        {"hear", [this](auto&) { bench_->hear(); }},
-        {"run", [this](auto& in) { run(in); }},
-        {"withdraw", [this](auto& in) { bench_->dispose(read<std::uint64_t>(in)); }},
-        {"lose-writer", [this](auto& in) { bench_->lose_writer(read<std::uint64_t>(in)); }},
-        {"estop", [this](auto& in) { bench_->estop = rest(in); }},
-        {"stop", [this](auto& in) { bench_->stop = stop_of(rest(in)); }},
-        {"bridge-confirms", [this](auto&) { bench_->confirms_stops = true; }},
-        {"heed", [this](auto& in) { bench_->executor.heed(stop_of(rest(in))); }},
-        {"interrupt",
-         [this](auto&) { EXPECT_TRUE(bench_->executor.interrupt(bench_->out.nodes.at(0).id)); }},
-        {"robot-gone",
-         [this](auto&) {
-           bench_->executor.lose_robot();
-           bench_->hear();
-         }},
-        {"connected", [this](auto& in) { bench_->world.robot.connected = rest(in) == "yes"; }},
-        {"new-connection", [this](auto&) { connect_anew(); }},
-        {"new-odom", [this](auto&) { bench_->world.robot.odom = 2; }},
-        {"at", [this](auto& in) { bench_->world.robot.pose_in_odom = test::pose_of(rest(in)); }},
-        {"map", [this](auto& in) { bench_->world.robot.odom_in_map = test::pose_of(rest(in)); }},
-        {"lost", [this](auto&) { bench_->world.robot.odom_in_map.reset(); }},
-        {"held", [this](auto& in) { bench_->world.held = rest(in) == "yes"; }},
-        {"velocity", [this](auto& in) { bench_->world.robot.velocity = read<double>(in); }},
-        {"motors-off", [this](auto&) { bench_->world.robot.has_power = false; }},
-        {"step-alone", [this](auto&) { bench_->step_without_moving(); }},
-        {"restart", [this](auto&) { restart(); }},
-        {"sleep", [this](auto& in) { bench_->cycle += read<std::uint64_t>(in); }}};
-    facts_ = {
-        {"behaviors", [this] { return behaviors(); }},
-        {"goal", [this] { return goal(); }},
-        {"nodes", [this] { return std::to_string(bench_->out.nodes.size()); }},
-        {"heeds",
-         [this] {
-           const v1::StopId stop = bench_->executor.heeds();
-           return std::to_string(stop.asker) + ":" + std::to_string(stop.number);
-         }},
-        {"asks the bridge to stop for", [this] { return bench_->out.stop.value_or("nobody"); }},
-        {"known", [this] { return known(); }},
-        {"cycle", [this] { return std::to_string(bench_->cycle); }},
-        {"published", [this] { return std::to_string(bench_->published); }},
-        {"functor of 1", [this] { return bench_->status(1).functor; }},
-        {"pose", [this] { return told(bench_->world.robot.pose_in_odom); }},
-        {"note of 1", [this] { return bench_->status(1).note; }},
-        {"step of 1", [this] { return bench_->status(1).step; }},
-        {"elapsed of 1", [this] { return plain(bench_->status(1).elapsed); }},
-        {"elapsed of 2", [this] { return plain(bench_->status(2).elapsed); }}};
+      ON("ask", ask(in)),
+      ON("begin", ask(in); bench_->step()),
+      ON("step", bench_->step(in >> std::ws && !in.eof() ? read<int>(in) : 1)),
+      ON("hear", bench_->hear()),
+      ON("run", run(in)),
+      ON("withdraw", bench_->dispose(read<std::uint64_t>(in))),
+      ON("lose-writer", bench_->lose_writer(read<std::uint64_t>(in))),
+      ON("estop", bench_->estop = rest(in)),
+      ON("stop", bench_->stop = stop_of(rest(in))),
+      ON("bridge-confirms", bench_->confirms_stops = true),
+      ON("heed", bench_->executor.heed(stop_of(rest(in)))),
+      ON("interrupt", EXPECT_TRUE(bench_->executor.interrupt(bench_->out.nodes.at(0).id))),
+      ON("robot-gone", bench_->executor.lose_robot(); bench_->hear()),
+      ON("connected", bench_->world.robot.connected = rest(in) == "yes"),
+      ON("new-connection", connect_anew()),
+      ON("new-odom", bench_->world.robot.odom = 2),
+      ON("at", bench_->world.robot.pose_in_odom = test::pose_of(rest(in))),
+      ON("map", bench_->world.robot.odom_in_map = test::pose_of(rest(in))),
+      ON("lost", bench_->world.robot.odom_in_map.reset()),
+      ON("held", bench_->world.held = rest(in) == "yes"),
+      ON("velocity", bench_->world.robot.velocity = read<double>(in)),
+      ON("motors-off", bench_->world.robot.has_power = false),
+      ON("step-alone", bench_->step_without_moving()),
+      ON("restart", restart()),
+      ON("sleep", bench_->cycle += read<std::uint64_t>(in))
+    };
+    facts_ = {IS("behaviors", behaviors()),
+              IS("goal", goal()),
+              IS("nodes", std::to_string(bench_->out.nodes.size())),
+              {"heeds",
+               [this] {
+                 const v1::StopId stop = bench_->executor.heeds();
+                 return std::to_string(stop.asker) + ":" + std::to_string(stop.number);
+               }},
+              IS("asks the bridge to stop for", bench_->out.stop.value_or("nobody")),
+              IS("known", known()),
+              IS("cycle", std::to_string(bench_->cycle)),
+              IS("published", std::to_string(bench_->published)),
+              IS("functor of 1", bench_->status(1).functor),
+              IS("pose", told(bench_->world.robot.pose_in_odom)),
+              IS("note of 1", bench_->status(1).note),
+              IS("step of 1", bench_->status(1).step),
+              IS("elapsed of 1", plain(bench_->status(1).elapsed)),
+              IS("elapsed of 2", plain(bench_->status(2).elapsed))};
   }
 
  private:

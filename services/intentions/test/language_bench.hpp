@@ -37,7 +37,7 @@ class Stage {
     options.forest.max_intentions = most;
     options.functions = std::make_shared<const Functions>(functions);
     Registry registry = built_in();
-    loaded = load_text("test.act", activities, functions, registry);
+    loaded = load_activities({{"test.act", activities}}, functions, registry);
     EXPECT_TRUE(loaded.ok() || may_fail == MayFail::kYes) << errors(loaded);
     for (const Schema& schema : loaded.schemas)
       registry.add(schema);

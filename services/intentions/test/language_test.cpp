@@ -150,7 +150,7 @@ Registry with_behaviors() {
 }
 
 Loaded load(const std::string& text) {
-  return load_text("a.act", text, core_functions(), with_behaviors());
+  return load_activities({{"a.act", text}}, core_functions(), with_behaviors());
 }
 
 /// "3:7 message" of each trouble.
@@ -208,8 +208,8 @@ TEST(ActivityErrors, ShowThePlaceWithACaret) {
 
 TEST(ActivityErrors, BehaviorsThatAreNotKnownYetAreDoubtful) {
   const Registry registry = built_in();
-  const Loaded loaded = load_text("a.act", goals("(INTEND :follow ())\n(INTEND :follow ())"),
-                                  core_functions(), registry);
+  const Loaded loaded = load_activities(
+      {{"a.act", goals("(INTEND :follow ())\n(INTEND :follow ())")}}, core_functions(), registry);
   EXPECT_TRUE(loaded.ok());
   ASSERT_EQ(loaded.troubles.size(), 1U) << "told once";
   Registry all = registry;

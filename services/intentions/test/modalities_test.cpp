@@ -11,9 +11,10 @@ TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
   Stage stage(activity("(WAIT-FOR stalled :forever t) (INTEND :part ())") +
               "(defintention :part :goals '((SUCCEED)))");
   stage.begin(2);
-  const Loaded changed = load_text(
-      "test.act", activity("(FAIL \"new\")") + "(defintention :part :goals '((FAIL \"new part\")))",
-      *stage.options.functions, stage.executor->registry());
+  const Loaded changed =
+      load_activities({{"test.act", activity("(FAIL \"new\")") +
+                                        "(defintention :part :goals '((FAIL \"new part\")))"}},
+                      *stage.options.functions, stage.executor->registry());
   ASSERT_TRUE(changed.ok()) << errors(changed);
   for (const Schema& schema : changed.schemas)
     stage.executor->registry().add(schema);

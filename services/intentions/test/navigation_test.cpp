@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdlib>
 #include <map>
 #include <sstream>
@@ -75,41 +74,36 @@ class Site {
 class Calls : public test::LinePlayer {
  public:
   Calls() {
-    events_ = {{"at", [this](auto& in) { s_.be_at(pose(in)); }},
-               {"place-unknown", [this](auto&) { s_.robot.odom_in_map.reset(); }},
-               {"hull", [this](auto& in) { s_.around.robot_radius = read<double>(in); }},
-               {"ticks", [this](auto& in) { s_.now += read<Ticks>(in); }},
-               {"cycle", [this](auto& in) { s_.around.cycle = read<std::uint64_t>(in); }},
-               {"revision", [this](auto& in) { s_.around.map_revision = read<std::uint64_t>(in); }},
-               {"zones",
-                [this](auto& in) {
-                  std::string lines = rest(in);
-                  for (std::size_t at = 0; (at = lines.find(" / ")) != std::string::npos;)
-                    lines.replace(at, 3, "\n");
-                  s_.know_map(lines);
-                }},
-               {"hear", [this](auto& in) { hear(in); }},
-               {"believe",
-                [this](auto& in) {
-                  const auto name = read<std::string>(in);
-                  s_.beliefs.set(name, value_of(rest(in)), "test", s_.now);
-                }},
-               {"forget", [this](auto& in) { s_.beliefs.unset(rest(in)); }},
-               {"keep",
-                [this](auto& in) {
-                  const auto name = read<std::string>(in);
-                  kept_[name] = value_of(rest(in));
-                }},
-               {"things", [this](auto&) { look_around(); }},
-               {"no-things", [this](auto&) { things_.clear(); }},
-               {"nobody-looks", [this](auto&) { s_.around.things = nullptr; }},
-               {"stands", [this](auto& in) {
-                  things_.resize(1);
-                  things_[0].pose_in_odom = pose(in);
-                  s_.around.things = &things_;
-                }}};
-    facts_ = {{"limit ahead", [this] { return limit(false); }},
-              {"limit back", [this] { return limit(true); }}};
+    events_ = {
+      ON("at", s_.be_at(pose(in))),
+      ON("place-unknown", s_.robot.odom_in_map.reset()),
+      ON("hull", s_.around.robot_radius = read<double>(in)),
+      ON("ticks", s_.now += read<Ticks>(in)),
+      ON("cycle", s_.around.cycle = read<std::uint64_t>(in)),
+      ON("revision", s_.around.map_revision = read<std::uint64_t>(in)),
+      {"zones",
+       [this](auto& in) {
+         std::string lines = rest(in);
+         for (std::size_t at = 0; (at = lines.find(" / ")) != std::string::npos;)
+           lines.replace(at, 3, "\n");
+         s_.know_map(lines);
+       }},
+      ON("hear", hear(in)),
+      ON("believe", const auto name = read<std::string>(in);
+         s_.beliefs.set(name, value_of(rest(in)), "test", s_.now)),
+      ON("forget", s_.beliefs.unset(rest(in))),
+      ON("keep", const auto name = read<std::string>(in); kept_[name] = value_of(rest(in))),
+      ON("things", look_around()),
+      ON("no-things", things_.clear()),
+      ON("nobody-looks", s_.around.things = nullptr),
+      {"stands",
+       [this](auto& in) {
+         things_.resize(1);
+         things_[0].pose_in_odom = pose(in);
+         s_.around.things = &things_;
+       }}
+    };
+    facts_ = {IS("limit ahead", limit(false)), IS("limit back", limit(true))};
   }
   void take(const std::string& line) {
     const std::size_t arrow = line.find(" => ");

@@ -171,8 +171,8 @@ TEST(RandomActivities, NeverLoseAParentAndLeaveNothingBehind) {
       if (!stage.out.behaviors.empty() && random.chance(0.02))
         stage.inputs.troubles.push_back({stage.out.behaviors.front().name, "it is broken"});
       if (random.chance(0.02)) {
-        const Loaded again = load_text("test.act", schemas(random), *stage.options.functions,
-                                       stage.executor->registry());
+        const Loaded again = load_activities({{"test.act", schemas(random)}},
+                                             *stage.options.functions, stage.executor->registry());
         for (const Schema& schema : again.schemas)
           stage.executor->registry().add(schema);
       }

@@ -33,7 +33,7 @@ class Site {
 
   void start() {
     Registry registry = built_in();
-    const Loaded loaded = load_text("test.act", activities_, *functions_, registry);
+    const Loaded loaded = load_activities({{"test.act", activities_}}, *functions_, registry);
     EXPECT_TRUE(loaded.ok());
     for (const Schema& schema : loaded.schemas)
       registry.add(schema);

@@ -18,6 +18,7 @@
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/idl/members.hpp"
 
 namespace saphira::registration {
 namespace {
@@ -169,47 +170,44 @@ bool contains(const std::string& text, const std::string& part) {
 class Hall : public test::LinePlayer {
  public:
   Hall() {
-    events_ = {{"no-map", [this](auto&) { settings_ = settings(""); }},
-               {"start-unknown", [this](auto&) { settings_.start.reset(); }},
-               {"stand", [this](auto&) { now_ = robot_.stand(core()); }},
-               {"step", [this](auto& in) { step(read<int>(in)); }},
-               {"reconnect", [this](auto&) { robot_.reconnect(); }},
-               {"new-frame", [this](auto&) { robot_.new_frame(); }},
-               {"restart", [this](auto& in) { restart(rest(in)); }},
-               {"suspend", [this](auto& in) { ask_process(rest(in), ProcessAction::suspend); }},
-               {"resume", [this](auto& in) { ask_process(rest(in), ProcessAction::resume); }},
-               {"ask", [this](auto& in) { ask(in); }},
-               {"asker",
-                [this](auto& in) {
-                  asker_ = {"planner", rest(in)};
-                }},
-               {"load", [this](auto& in) { load_map(in); }},
-               {"put", [this](auto& in) { put_artifact(in); }},
-               {"answers", [this](auto& in) { answers(rest(in)); }},
-               {"reason", [this](auto& in) { expect_like(now_.reason, rest(in)); }},
-               {"says", [this](auto& in) { expect_like(said(), rest(in)); }},
-               {"near", [this](auto& in) { near(now_.pose_in_map, pose_of(rest(in)), 0.1); }},
-               {"keep", [this](auto&) { keep(); }},
-               {"as-kept", [this](auto& in) { near(now_.pose_in_map, kept_, read<double>(in)); }},
-               {"place-ahead", [this](auto& in) { place_ahead(read<double>(in)); }},
-               {"map-starts-near", [this](auto& in) { map_starts_near(pose_of(rest(in))); }},
-               {"has", [this](auto& in) { EXPECT_TRUE(artifact(in)); }},
-               {"has-not", [this](auto& in) { EXPECT_FALSE(artifact(in)); }},
-               {"has-at", [this](auto& in) { EXPECT_TRUE(has_at(pose_of(rest(in)))); }}};
-    facts_ = {{"state", [this] { return std::string(word(now_.state)); }},
-              {"environment", [this] { return std::to_string(now_.environment); }},
-              {"trust", [this] { return trust(); }},
-              {"less sure", [this] { return yes(now_.covariance(0, 0) > kept_variance_); }},
-              {"id", [this] { return std::to_string(id_); }},
-              {"rule", [this] { return rule(); }},
-              {"source", [this] { return core().map_source(); }},
-              {"changed", [this] { return yes(core().map_changed()); }},
-              {"revised", [this] { return yes(core().map_revision() > kept_revision_); }},
-              {"artifacts", [this] { return std::to_string(core().map().features.size()); }},
-              {"some artifacts", [this] { return yes(!core().map().features.empty()); }},
-              {"adds", [this] { return yes(core().adds_features()); }},
-              {"snaps", [this] { return yes(core().snaps()); }},
-              {"remembers", [this] { return remembers(); }}};
+    events_ = {ON("no-map", settings_ = settings("")),
+               ON("start-unknown", settings_.start.reset()),
+               ON("stand", now_ = robot_.stand(core())),
+               ON("step", step(read<int>(in))),
+               ON("reconnect", robot_.reconnect()),
+               ON("new-frame", robot_.new_frame()),
+               ON("restart", restart(rest(in))),
+               ON("suspend", ask_process(rest(in), ProcessAction::suspend)),
+               ON("resume", ask_process(rest(in), ProcessAction::resume)),
+               ON("ask", ask(in)),
+               ON("asker", asker_ = {"planner", rest(in)}),
+               ON("load", load_map(in)),
+               ON("put", put_artifact(in)),
+               ON("answers", answers(rest(in))),
+               ON("reason", expect_like(now_.reason, rest(in))),
+               ON("says", expect_like(said(), rest(in))),
+               ON("near", near(now_.pose_in_map, pose_of(rest(in)), 0.1)),
+               ON("keep", keep()),
+               ON("as-kept", near(now_.pose_in_map, kept_, read<double>(in))),
+               ON("place-ahead", place_ahead(read<double>(in))),
+               ON("map-starts-near", map_starts_near(pose_of(rest(in)))),
+               ON("has", EXPECT_TRUE(artifact(in))),
+               ON("has-not", EXPECT_FALSE(artifact(in))),
+               ON("has-at", EXPECT_TRUE(has_at(pose_of(rest(in)))))};
+    facts_ = {IS("state", lowered(std::string(v1::name_of(now_.state)).substr(13))),
+              IS("environment", std::to_string(now_.environment)),
+              IS("trust", trust()),
+              IS("less sure", yes(now_.covariance(0, 0) > kept_variance_)),
+              IS("id", std::to_string(id_)),
+              IS("rule", rule()),
+              IS("source", core().map_source()),
+              IS("changed", yes(core().map_changed())),
+              IS("revised", yes(core().map_revision() > kept_revision_)),
+              IS("artifacts", std::to_string(core().map().features.size())),
+              IS("some artifacts", yes(!core().map().features.empty())),
+              IS("adds", yes(core().adds_features())),
+              IS("snaps", yes(core().snaps())),
+              IS("remembers", remembers())};
   }
 
  private:
@@ -293,18 +291,6 @@ class Hall : public test::LinePlayer {
   bool has_at(const Pose& pose) {
     return std::ranges::any_of(core().map().features,
                                [&](const auto& one) { return one.pose_in_map == pose; });
-  }
-  static const char* word(v1::RegistrationState state) {
-    switch (state) {
-      case v1::REGISTRATION_TRACKING:
-        return "tracking";
-      case v1::REGISTRATION_LOST:
-        return "lost";
-      case v1::REGISTRATION_OFF:
-        return "off";
-      default:
-        return "unplaced";
-    }
   }
   std::string trust() const {
     const double is = now_.confidence;

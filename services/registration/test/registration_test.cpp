@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <set>
-#include <utility>
 #include <vector>
 
 #include "saphira/base/archive.hpp"

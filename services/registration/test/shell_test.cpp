@@ -20,6 +20,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/request_client.hpp"
+#include "trouble.hpp"
 
 namespace {
 
@@ -269,13 +270,8 @@ TEST(StartPose, IsAPlaceOrAPose) {
   EXPECT_THROW(start_pose("1.5,nan,0", {}), std::invalid_argument);
   EXPECT_THROW(start_pose("1.5,-1e13,0", {}), std::invalid_argument);
   EXPECT_THROW(start_pose("kitchen", map), std::invalid_argument);
-  const auto said = [&](const char* start) -> std::string {
-    try {
-      start_pose(start, map);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  const auto said = [&](const char* start) {
+    return test::trouble_of<std::invalid_argument>([&] { start_pose(start, map); });
   };
   EXPECT_EQ(said("1,2,6.28"), "");
   EXPECT_EQ(

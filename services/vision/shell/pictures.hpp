@@ -19,8 +19,6 @@ class Pictures {
   /// An empty path: no pictures. `came` is called for every picture, in the reading thread.
   explicit Pictures(std::string path, std::function<void()> came = {});
   ~Pictures();
-  Pictures(const Pictures&) = delete;
-  Pictures& operator=(const Pictures&) = delete;
 
   /// The newest picture up to that cycle; drops earlier ones.
   std::optional<StereoPicture> take(std::uint64_t cycle);

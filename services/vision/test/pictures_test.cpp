@@ -27,8 +27,7 @@ class Camera {
     ::close(client_);
     ::close(listener_);
   }
-  Camera(const Camera&) = delete;
-  Camera& operator=(const Camera&) = delete;
+  Camera& operator=(Camera&&) = delete;
 
   void accept() { client_ = ::accept(listener_, nullptr, nullptr); }
   void show(std::uint64_t cycle) const {

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "trouble.hpp"
+
 namespace saphira {
 namespace {
 
@@ -75,13 +77,8 @@ TEST(Archive, AStateIsTheSameAfterItsText) {
 }
 
 std::string error(const std::string& text) {
-  try {
-    State state;
-    restore(text, state);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return {};
+  State state;
+  return test::trouble_of<std::runtime_error>([&] { restore(text, state); });
 }
 
 TEST(Archive, AnErrorNamesThePlaceAndTheExpectedValue) {

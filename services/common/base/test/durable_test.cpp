@@ -11,6 +11,7 @@
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
+#include "trouble.hpp"
 
 namespace saphira {
 namespace {
@@ -59,17 +60,13 @@ TEST(Durable, AnotherFileStaysAsItIs) {
   const test::TempDir folder;
   const std::string path = folder.path("notes.txt");
   write(path, "mine\n");
+  const auto read = [](const std::string&) { throw std::runtime_error("it has no sum"); };
   for (const Files files : {Files::kChange, Files::kStay}) {
-    try {
-      read_or_set_aside(
-          path, [](const std::string&) { throw std::runtime_error("it has no sum"); }, files);
-      FAIL() << "no error";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()),
-                path +
-                    ": expected a file that this program has written, or a new name; found another "
-                    "file, which stays as it is: it has no sum");
-    }
+    EXPECT_EQ(
+        test::trouble_of<std::invalid_argument>([&] { read_or_set_aside(path, read, files); }),
+        path +
+            ": expected a file that this program has written, or a new name; found another "
+            "file, which stays as it is: it has no sum");
     EXPECT_EQ(read_file(path), "mine\n");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   }

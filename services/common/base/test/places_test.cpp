@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "trouble.hpp"
+
 namespace saphira {
 namespace {
 
@@ -33,37 +35,26 @@ TEST(Places, APathIsTakenAsItIs) {
   EXPECT_EQ(find_file(kRobots, path, ".p"), path);
 }
 
+std::string trouble(const std::string& name) {
+  return test::trouble_of<std::invalid_argument>([&] { find_file(kRobots, name, ".p"); });
+}
+
 TEST(Places, AFolderIsNoFile) {
   for (const auto& [path, found] : {std::pair("/tmp", "a folder"), {"/dev/null", "a device"}})
-    try {
-      find_file(kRobots, path, ".p");
-      FAIL() << "found";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(error.what(), path + std::string(": expected a file, found ") + found);
-    }
+    EXPECT_EQ(trouble(path), path + std::string(": expected a file, found ") + found);
 }
 
 TEST(Places, APathIsNoShippedName) {
   for (const auto& [path, said] :
        {std::pair(std::string("/tmp/nowhere/pioneer.p"), std::string()),
         {kRobots + "/pionere.p", ": did you mean " + kRobots + "/pioneer.p?"}})
-    try {
-      find_file(kRobots, path, ".p");
-      FAIL() << "found";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(error.what(), path + ": there is no such file" + said);
-    }
+    EXPECT_EQ(trouble(path), path + ": there is no such file" + said);
 }
 
 TEST(Places, WhatIsNotThereIsAnErrorThatListsWhatIs) {
-  try {
-    find_file(kRobots, "nonesuch", ".p");
-    FAIL() << "found";
-  } catch (const std::invalid_argument& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find("no \"nonesuch\" in " + kRobots), std::string::npos) << text;
-    EXPECT_NE(text.find(" pioneer"), std::string::npos) << text;
-  }
+  const std::string text = trouble("nonesuch");
+  EXPECT_NE(text.find("no \"nonesuch\" in " + kRobots), std::string::npos) << text;
+  EXPECT_NE(text.find(" pioneer"), std::string::npos) << text;
 }
 
 }  // namespace

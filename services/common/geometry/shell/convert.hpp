@@ -32,4 +32,10 @@ auto converted(const Items& items, Convert&& convert,
   return result;
 }
 
+/// As many as the bound of the sequence.
+template <class T>
+void shorten(std::vector<T>& items, std::size_t most) {
+  items.resize(std::min(items.size(), most));
+}
+
 }  // namespace saphira

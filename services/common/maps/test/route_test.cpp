@@ -41,30 +41,25 @@ class Ways : public test::LinePlayer {
  public:
   Ways() {
     events_ = {
-        {"map", [this](auto& in) { topology_ = Topology(parse_map(lines(in), "test.map")); }},
-        {"zone", [this](auto& in) { zones_ += "ZONE " + lines(in); }},
-        {"advice", [this](auto& in) { advice_ = rest(in); }},
-        {"said", [this](auto& in) { said_by_ = rest(in); }},
-        {"wide", [this](auto& in) { settings_.needs_width = read<double>(in); }},
-        {"blocked", [this](auto& in) { settings_.blocked = ids(in); }},
-        {"closed", [this](auto& in) { settings_.closed = ids(in); }},
-        {"go",
-         [this](auto& in) {
-           const Vec2 from = point(in);
-           found_ = find_route(topology_, from, rest(in), settings());
-         }},
-        {"go-to-point",
-         [this](auto& in) {
-           const Vec2 from = point(in);
-           found_ = find_route(topology_, from, point(in), settings());
-         }},
-        {"way", [this](auto& in) { way(rest(in)); }},
-        {"reason", [this](auto& in) { expect_like(found_.reason, rest(in)); }},
-        {"remark", [this](auto& in) { expect_like(found_.remark(), rest(in)); }},
-        {"length", [this](auto& in) { EXPECT_NEAR(length(), read<double>(in), 0.005); }},
-        {"begins", [this](auto& in) { near(points().front(), point(in)); }},
-        {"ends", [this](auto& in) { near(points().back(), point(in)); }}};
-    facts_ = {{"legs", [this] { return std::to_string(found_.route.value().legs.size()); }}};
+      ON("map", topology_ = Topology(parse_map(lines(in), "test.map"))),
+      ON("zone", zones_ += "ZONE " + lines(in)),
+      ON("advice", advice_ = rest(in)),
+      ON("said", said_by_ = rest(in)),
+      ON("wide", settings_.needs_width = read<double>(in)),
+      ON("blocked", settings_.blocked = ids(in)),
+      ON("closed", settings_.closed = ids(in)),
+      ON("go", const Vec2 from = point(in);
+         found_ = find_route(topology_, from, rest(in), settings())),
+      ON("go-to-point", const Vec2 from = point(in);
+         found_ = find_route(topology_, from, point(in), settings())),
+      ON("way", way(rest(in))),
+      ON("reason", expect_like(found_.reason, rest(in))),
+      ON("remark", expect_like(found_.remark(), rest(in))),
+      ON("length", EXPECT_NEAR(length(), read<double>(in), 0.005)),
+      ON("begins", near(points().front(), point(in))),
+      ON("ends", near(points().back(), point(in)))
+    };
+    facts_ = {IS("legs", std::to_string(found_.route.value().legs.size()))};
   }
 
  private:

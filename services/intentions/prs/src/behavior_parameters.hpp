@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/intentions/activity.hpp"
 #include "saphira/intentions/schema.hpp"
 
@@ -23,10 +24,7 @@ class BehaviorParameters {
   /// where it never had one.
   bool place(Arguments& parameters, const World& world) const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("given", given_)("things", things_)("on_map", on_map_);
-  }
+  SAPHIRA_ARCHIVE(given_, things_, on_map_)
 
  private:
   Arguments given_;

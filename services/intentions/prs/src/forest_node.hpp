@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "behavior_parameters.hpp"
+#include "saphira/base/archived.hpp"
 #include "saphira/intentions/forest.hpp"
 
 namespace saphira::intentions {
@@ -43,14 +44,9 @@ struct Forest::Node {
   bool gone = false;                   ///< removed, in the course of a step
   std::optional<std::string> trouble;  ///< with a behavior of its own
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("shown", shown)("children", children)("root", root)("depth", depth)("concurrent", concurrent)(
-        "holds", holds)("suspended", suspended)("suspended_at", suspended_at)("timeout", timeout)(
-        "begun", begun)("level", level)("outcome", outcome)("given", given)("label", label)(
-        "behavior", behavior)("parameters", parameters)("until_satisfied", until_satisfied)(
-        "since", since)("progress", progress)("stepped", stepped)("trouble", trouble);
-  }
+  SAPHIRA_ARCHIVE(shown, children, root, depth, concurrent, holds, suspended, suspended_at, timeout,
+                  begun, level, outcome, given, label, behavior, parameters, until_satisfied, since,
+                  progress, stepped, trouble)
 };
 
 }  // namespace saphira::intentions

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <deque>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/intentions/schema.hpp"
 
@@ -21,10 +22,7 @@ class Trail {
   Vec2 at(double distance) const;
   std::size_t places() const { return places_.size(); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("robot", robot_)("places", places_);
-  }
+  SAPHIRA_ARCHIVE(robot_, places_)
 
  private:
   Vec2 robot_{0.0, 0.0};

@@ -10,6 +10,7 @@
 #include "driving.hpp"
 #include "following.hpp"
 #include "mapping.hpp"
+#include "saphira/base/archived.hpp"
 #include "zones.hpp"
 
 namespace saphira::intentions {
@@ -76,10 +77,7 @@ class Watchdog {
   double patience() const { return patience_; }
   void patience(double seconds) { patience_ = seconds; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("step", step_)("patience", patience_)("best", best_)("since", since_);
-  }
+  SAPHIRA_ARCHIVE(step_, patience_, best_, since_)
 
  private:
   double step_;
@@ -108,10 +106,7 @@ class Motion {
   /// Some robots do not report that their motors are off.
   bool none_though_told() const { return told_ && !moved_ && !stalled_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("first", first_)("moved", moved_)("told", told_)("stalled", stalled_);
-  }
+  SAPHIRA_ARCHIVE(first_, moved_, told_, stalled_)
 
  private:
   static constexpr double kMoved = 0.01;              // [m]
@@ -139,10 +134,7 @@ class KeepOut {
   /// After a pause, or towards another target.
   void restart() { zone_.clear(); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("zone", zone_)("since", since_);
-  }
+  SAPHIRA_ARCHIVE(zone_, since_)
 
  private:
   static constexpr double kStands = 2.0;  // [s]

@@ -97,8 +97,6 @@ class Host {
   /// the trace cannot be opened.
   explicit Host(const HostOptions& options);
   ~Host();
-  Host(const Host&) = delete;
-  Host& operator=(const Host&) = delete;
 
   /// Serves inputs that are here, or come within so many milliseconds; below zero: without end.
   /// False where stop_fd is readable (it is not read).

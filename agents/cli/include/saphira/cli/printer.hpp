@@ -17,8 +17,7 @@ class Printer {
   explicit Printer(int fd, std::size_t room = 1U << 18U);
   /// Drops the unprinted text.
   ~Printer();
-  Printer(const Printer&) = delete;
-  Printer& operator=(const Printer&) = delete;
+  Printer& operator=(Printer&&) = delete;
 
   /// Prints whole lines, in order.
   void print(std::string_view text);

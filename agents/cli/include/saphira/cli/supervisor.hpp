@@ -59,8 +59,7 @@ class Supervisor {
              std::chrono::milliseconds proven = std::chrono::seconds(10));
   /// Stops the running children.
   ~Supervisor();
-  Supervisor(const Supervisor&) = delete;
-  Supervisor& operator=(const Supervisor&) = delete;
+  Supervisor& operator=(Supervisor&&) = delete;
 
   /// Starts every child. std::runtime_error when one cannot be started at all.
   void start();

@@ -72,8 +72,6 @@ class Recognizer {
   /// model.
   Recognizer(RecognizerSettings settings, std::string_view pronunciations, const std::string& file);
   ~Recognizer();
-  Recognizer(const Recognizer&) = delete;
-  Recognizer& operator=(const Recognizer&) = delete;
 
   /// Used from the next utterance on.
   void listen_for(const agent_interface::WordGraph& graph);

@@ -9,6 +9,7 @@
 
 #include "saphira/authority/latches.hpp"
 #include "saphira/base/age.hpp"
+#include "saphira/base/archived.hpp"
 #include "saphira/idl/common.hpp"
 
 namespace saphira::authority {
@@ -135,14 +136,9 @@ class Arbiter {
   /// The number of refused commands since the start.
   std::uint64_t refused_count() const { return refused_count_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("epoch", epoch_)("deaf_cycle", deaf_cycle_)("deaf_until", deaf_until_)("deaf_why", deaf_why_)(
-        "players", players_)("numbers", numbers_)("offers", offers_)("last_stopper", last_stopper_)(
-        "stop_cycle", stop_cycle_)("latches", latches_)("pressed", pressed_)(
-        "began_pressed", began_pressed_)("person", person_)("quiet_since", quiet_since_)(
-        "quiet_heard", quiet_heard_)("refused", refused_)("refused_count", refused_count_);
-  }
+  SAPHIRA_ARCHIVE(epoch_, deaf_cycle_, deaf_until_, deaf_why_, players_, numbers_, offers_,
+                  last_stopper_, stop_cycle_, latches_, pressed_, began_pressed_, person_,
+                  quiet_since_, quiet_heard_, refused_, refused_count_)
 
  private:
   /// The writer in a role, by its newest accepted command.

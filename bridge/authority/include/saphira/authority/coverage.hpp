@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saphira/authority/echo_map.hpp"
+#include "saphira/base/archived.hpp"
 #include "saphira/protocol/parameters.hpp"
 
 namespace saphira::authority {
@@ -32,10 +33,7 @@ class Coverage {
   /// 0.35 m.
   double way(bool forward) const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("radius", radius_)("range", range_)("robot_in_odom", robot_in_odom_)("lobes", lobes_);
-  }
+  SAPHIRA_ARCHIVE(radius_, range_, robot_in_odom_, lobes_)
 
  private:
   struct Lobe {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::authority {
@@ -75,11 +76,7 @@ struct Guarded {
   std::optional<Vec2> obstacle = std::nullopt;
   bool sweep = false;  ///< the sonars have to cover more of the path, or the robot becomes slow
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("velocity", velocity)("rotation_velocity", rotation_velocity)("action", action)(
-        "reason", reason)("obstacle", obstacle)("sweep", sweep);
-  }
+  SAPHIRA_ARCHIVE(velocity, rotation_velocity, action, reason, obstacle, sweep)
 };
 
 /// The greatest speed [m/s] from which the robot is down to `end` [m/s] after `distance` [m]. A

@@ -14,6 +14,7 @@
 #include "saphira/authority/coverage.hpp"
 #include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
+#include "saphira/base/archived.hpp"
 #include "saphira/bridge/events.hpp"
 #include "saphira/bridge/line.hpp"
 #include "saphira/protocol/packet.hpp"
@@ -126,23 +127,13 @@ class Core {
   const protocol::RobotParameters& parameters() const { return reflector_.parameters(); }
 
   /// Between two calls, when the outputs were taken.
-  template <class Archive>
-  void archive(Archive& a) {
-    a("words", words_)("audit", audit_)("parser", parser_)("connection", connection_)(
-        "reflector", reflector_)("arbiter", arbiter_)("drivers", drivers_)("guards", guards_)(
-        "session", session_)("last_epoch", last_epoch_)("last_odom", last_odom_)("memory", memory_)(
-        "slack", slack_)("shown", shown_)("line", line_)("own_deceleration", own_deceleration_)(
-        "robot_trouble", robot_trouble_)("permit", permit_)("kept", kept_)("grant", grant_)(
-        "told", told_)("guarded", guarded_)("refused_drivers", refused_drivers_)(
-        "grant_changed", grant_changed_)("pressed", pressed_)("driver_spoke", driver_spoke_)(
-        "expires_at", expires_at_)("flush_at", flush_at_)("stops", stops_)(
-        "numberless_stops", numberless_stops_)("room", room_)("last_loop", last_loop_)(
-        "last_bytes", last_bytes_)("stale_until", stale_until_)("hold_off", hold_off_)(
-        "keeper_alive", keeper_alive_)("keeper_restarts", keeper_restarts_)(
-        "keeper_new_until", keeper_new_until_)("reported_at", reported_at_)("wait", wait_)(
-        "reaction_at", reaction_at_)("reaction_sum", reaction_sum_)("reaction_max", reaction_max_)(
-        "reactions", reactions_)("late", late_)("steps", steps_);
-  }
+  SAPHIRA_ARCHIVE(words_, audit_, parser_, connection_, reflector_, arbiter_, drivers_, guards_,
+                  session_, last_epoch_, last_odom_, memory_, slack_, shown_, line_,
+                  own_deceleration_, robot_trouble_, permit_, kept_, grant_, told_, guarded_,
+                  refused_drivers_, grant_changed_, pressed_, driver_spoke_, expires_at_, flush_at_,
+                  stops_, numberless_stops_, room_, last_loop_, last_bytes_, stale_until_,
+                  hold_off_, keeper_alive_, keeper_restarts_, keeper_new_until_, reported_at_,
+                  wait_, reaction_at_, reaction_sum_, reaction_max_, reactions_, late_, steps_)
 
  private:
   /// The state of one session with the robot, forgotten at its end.

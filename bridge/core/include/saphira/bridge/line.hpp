@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/protocol/impossible.hpp"
 
 namespace saphira::bridge {
@@ -33,11 +34,7 @@ class Line {
   double stands_until() const { return stands_until_; }
   std::string why_it_stands(double now) const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("newest", newest_)("count", count_)("next", next_)("damaged", damaged_)(
-        "heard_moving", heard_moving_)("unheard", unheard_)("stands_until", stands_until_);
-  }
+  SAPHIRA_ARCHIVE(newest_, count_, next_, damaged_, heard_moving_, unheard_, stands_until_)
 
  private:
   static constexpr std::size_t kWindow = 50;
@@ -68,10 +65,7 @@ class Doubts {
   /// New doubts, each once, and no more often than a person can read.
   std::optional<std::string> take_words(double now);
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("count", count_)("newest", newest_)("at", at_)("news", news_)("told", told_);
-  }
+  SAPHIRA_ARCHIVE(count_, newest_, at_, news_, told_)
 
  private:
   std::uint64_t count_ = 0;

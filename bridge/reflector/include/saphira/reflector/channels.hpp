@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/reflector/motion.hpp"
 
@@ -50,10 +51,7 @@ class Channels {
   /// The newest setpoint of the translation channel [m/s].
   double sent_velocity() const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("channels", channels_)("brake", brake_);
-  }
+  SAPHIRA_ARCHIVE(channels_, brake_)
 
  private:
   struct Channel {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/protocol/command.hpp"
 
 namespace saphira::reflector {
@@ -49,12 +50,8 @@ class Connection {
   /// The awaited answer, in words.
   std::string waiting_for() const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("state", state_)("in_session", in_session_)("identity", identity_)("sent", sent_)(
-        "answered", answered_)("began", began_)("round_trip", round_trip_)("nameless", nameless_)(
-        "echoes", echoes_)("tries", tries_);
-  }
+  SAPHIRA_ARCHIVE(state_, in_session_, identity_, sent_, answered_, began_, round_trip_, nameless_,
+                  echoes_, tries_)
 
  private:
   Packets go(State state, double now);

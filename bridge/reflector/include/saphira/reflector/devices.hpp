@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/parameters.hpp"
@@ -71,11 +72,7 @@ class Devices {
   /// Requests that failed since the last call, in words.
   std::vector<std::string> take_troubles() { return std::exchange(troubles_, {}); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("items", items_)("digital_output", digital_output_)("reports", reports_)("changed", changed_)(
-        "answered", answered_)("troubles", troubles_);
-  }
+  SAPHIRA_ARCHIVE(items_, digital_output_, reports_, changed_, answered_, troubles_)
 
  private:
   struct Item {

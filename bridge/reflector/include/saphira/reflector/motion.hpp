@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::reflector {
@@ -58,11 +59,7 @@ class DirectMotion {
   /// [m] The remaining way of a position; 0: done, or no position.
   double distance_left() const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("limits", limits_)("setpoints", setpoints_)("target", target_)("speed", speed_)(
-        "travelled", travelled_)("begun", begun_)("sets", sets_);
-  }
+  SAPHIRA_ARCHIVE(limits_, setpoints_, target_, speed_, travelled_, begun_, sets_)
 
  private:
   Limits limits_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::reflector {
@@ -67,11 +68,7 @@ class Odometry {
   /// The last packet's way along the robot's own heading [m].
   double advance() const { return advance_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("settings", settings_)("first", first_)("remembered", remembered_)("fresh", fresh_)(
-        "slack", slack_)("memory", memory_)("pose", pose_)("advance", advance_);
-  }
+  SAPHIRA_ARCHIVE(settings_, first_, remembered_, fresh_, slack_, memory_, pose_, advance_)
 
  private:
   void begin(const RawPose& raw, std::uint64_t odom);

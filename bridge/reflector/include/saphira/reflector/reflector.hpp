@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/reflector/channels.hpp"
@@ -85,12 +86,8 @@ class Reflector {
   bool pending(double now) const { return channels_.pending(now) || devices_.pending(now); }
   double sent_velocity() const { return channels_.sent_velocity(); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("parameters", parameters_)("odometry", odometry_)("motion", motion_)("channels", channels_)(
-        "devices", devices_)("state", state_)("last_packet", last_packet_)("last_sent", last_sent_)(
-        "packet_times", packet_times_)("sonar_times", sonar_times_);
-  }
+  SAPHIRA_ARCHIVE(parameters_, odometry_, motion_, channels_, devices_, state_, last_packet_,
+                  last_sent_, packet_times_, sonar_times_)
 
  private:
   void fill_buckets();

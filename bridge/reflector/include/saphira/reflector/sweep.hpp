@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/reflector/motion.hpp"
 
 namespace saphira::reflector {
@@ -14,11 +15,7 @@ class Sweep {
   /// `angle` [rad] to either side. A stop or a turn of the driver ends it.
   void step(std::uint64_t cycle, bool needed, double angle, Setpoints& setpoints);
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("swings", swings_)("begun", begun_)("cycle", cycle_)("angle", angle_)("course_in_odom",
-                                                                            course_in_odom_);
-  }
+  SAPHIRA_ARCHIVE(swings_, begun_, cycle_, angle_, course_in_odom_)
 
  private:
   bool swings_ = false;

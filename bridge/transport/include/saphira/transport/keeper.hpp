@@ -23,8 +23,7 @@ class Keeper {
   explicit Keeper(std::chrono::milliseconds silence = std::chrono::milliseconds(300),
                   std::string program = {});
   ~Keeper();
-  Keeper(const Keeper&) = delete;
-  Keeper& operator=(const Keeper&) = delete;
+  Keeper& operator=(Keeper&&) = delete;
 
   /// The robot is behind this descriptor from now on, and the keeper gets a copy of it; `stop`: the
   /// packets that stop the robot, at most 64 bytes.

@@ -21,8 +21,7 @@ class Link {
 
   explicit Link(Address address) : address_(std::move(address)) {}
   ~Link();
-  Link(const Link&) = delete;
-  Link& operator=(const Link&) = delete;
+  Link& operator=(Link&&) = delete;
 
   const Address& address() const { return address_; }
   State state() const { return state_; }

@@ -45,8 +45,6 @@ class Foreign {
   /// `wake` is called, from any thread, when a sample has come. std::runtime_error names the cause.
   Foreign(const Options& options, std::function<void()> wake);
   ~Foreign();
-  Foreign(const Foreign&) = delete;
-  Foreign& operator=(const Foreign&) = delete;
 
   WriterId id() const;
 

@@ -23,8 +23,6 @@ class Gateway {
   /// Carries the topics that have endpoints inside now. `outside` outlives the gateway.
   Gateway(Node& outside, std::shared_ptr<MemoryBus> inside);
   ~Gateway();
-  Gateway(const Gateway&) = delete;
-  Gateway& operator=(const Gateway&) = delete;
 
   /// Carries the samples that have come on either side. Nearly free where none have.
   void carry();

@@ -16,8 +16,6 @@ class Namesakes {
 
   explicit Namesakes(Node& node);
   ~Namesakes();
-  Namesakes(const Namesakes&) = delete;
-  Namesakes& operator=(const Namesakes&) = delete;
 
   /// Takes the others' statuses. True where this program must not act: another one serves, as the
   /// node's status then says, or may serve. Announcements come before the samples of any topic, so

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
+
 namespace saphira::agent_interface {
 
 /// A fact that somebody told the robot (paper 4.5).
@@ -51,10 +53,7 @@ class Knowledge {
   /// True where there is a fact about that person, or that person knows a place of others.
   bool knows(std::string_view person) const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("all", all_)("newest", newest_);
-  }
+  SAPHIRA_ARCHIVE(all_, newest_)
 
  private:
   std::vector<Advice> all_;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/requests/request.hpp"
 
 namespace saphira::agent_interface {
@@ -66,10 +67,7 @@ class Triggers {
   /// True where the memory has changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
   /// The memory: the firings.
-  template <class Archive>
-  void archive(Archive& a) {
-    a("fired", fired_);
-  }
+  SAPHIRA_ARCHIVE(fired_)
 
  private:
   struct Armed {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
 #include "saphira/behaviors/executive.hpp"
@@ -41,12 +42,7 @@ class Core {
 
   ProcessTable& processes() { return processes_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("processes", processes_)("executive", executive_)("delay", delay_)(
-        "frame_since", frame_since_)("number", number_)("trouble", trouble_)("slow", slow_)(
-        "active", active_);
-  }
+  SAPHIRA_ARCHIVE(processes_, executive_, delay_, frame_since_, number_, trouble_, slow_, active_)
 
  private:
   void begin(const Inputs& inputs);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saphira/base/age.hpp"
+#include "saphira/base/archived.hpp"
 #include "saphira/behaviors/behavior.hpp"
 #include "saphira/behaviors/blend.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
@@ -118,10 +119,7 @@ class Executive {
     std::unique_ptr<Behavior> behavior;
     bool initialised = false;
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a("intended", intended)("parameters", parameters)("initialised", initialised);
-    }
+    SAPHIRA_ARCHIVE(intended, parameters, initialised)
   };
   /// Contact is wanted where every behavior that contributes to the speed wants it: the least of
   /// their limits. An active avoiding behavior forbids contact.

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/requests/functor.hpp"
 
 namespace saphira::behaviors {
@@ -41,10 +42,7 @@ class Parameters {
   /// The index of a text among its choices.
   std::size_t choice(std::size_t index) const { return items_[index].choice; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("items", items_);
-  }
+  SAPHIRA_ARCHIVE(items_)
 
  private:
   /// One for each parameter of the schema; nothing for an absent point.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/intentions/value.hpp"
 #include "saphira/intentions/world.hpp"
 
@@ -16,10 +17,7 @@ class Gaze {
   /// The direction to ask of the head [rad], where it has to turn.
   std::optional<double> step(const World& world);
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("asked", asked_)("at", at_)("now", now_);
-  }
+  SAPHIRA_ARCHIVE(asked_, at_, now_)
 
  private:
   double wanted(const World& world, const Value& watched) const;

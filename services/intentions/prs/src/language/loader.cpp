@@ -147,11 +147,6 @@ Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& 
   return loaded;
 }
 
-Loaded load_text(const std::string& file, std::string_view content, const Functions& functions,
-                 const Registry& known) {
-  return load_activities({{file, std::string(content)}}, functions, known);
-}
-
 std::vector<Diagnostic> check_references(const Registry& registry) {
   std::vector<Diagnostic> troubles;
   std::set<std::string> told;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::interpretation {
@@ -72,10 +73,7 @@ class Grid {
   std::uint64_t updates() const { return updates_; }  ///< cells, since the beginning
   const GridSettings& settings() const { return settings_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("tiles", tiles_)("cleared", cleared_)("fired", fired_)("updates", updates_);
-  }
+  SAPHIRA_ARCHIVE(tiles_, cleared_, fired_, updates_)
 
  private:
   static constexpr int kBins = 12;  // of the direction of view

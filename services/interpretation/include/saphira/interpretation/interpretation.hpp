@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/base/process.hpp"
 #include "saphira/interpretation/grid.hpp"
 #include "saphira/interpretation/side_view.hpp"
@@ -74,8 +75,7 @@ class Interpretation {
   /// tasks: the parts that work; without them, all. They outlive the interpretation, and their
   /// table is stepped before each step.
   explicit Interpretation(Settings settings, const Tasks* tasks = nullptr);
-  Interpretation(const Interpretation&) = delete;
-  Interpretation& operator=(const Interpretation&) = delete;
+  Interpretation& operator=(Interpretation&&) = delete;
 
   const Output& step(const Inputs& inputs);
   /// Forgets everything but the settings; ids are not used again.
@@ -87,12 +87,8 @@ class Interpretation {
   const SideView& left() const { return sides_[0]; }
   const SideView& right() const { return sides_[1]; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("placed", placed_)("pose_in_odom", pose_in_odom_)("cycle", cycle_)("travelled", travelled_)(
-        "turned", turned_)("grid", grid_)("sides", sides_)("others", others_)(
-        "standing", standing_)("last_id", last_id_)("output", output_);
-  }
+  SAPHIRA_ARCHIVE(placed_, pose_in_odom_, cycle_, travelled_, turned_, grid_, sides_, others_,
+                  standing_, last_id_, output_)
 
  private:
   using Lines = std::array<std::uint32_t, 2>;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/interpretation/tangent.hpp"
 #include "saphira/lps/percept.hpp"
 
@@ -122,10 +123,7 @@ class SideView {
     double turned = 0.0;
     std::vector<const Return*> echoes;
 
-    template <class Archive>
-    void archive(Archive& a) {
-      a("id", id)("fit", fit)("newest", newest)("turned", turned);
-    }
+    SAPHIRA_ARCHIVE(id, fit, newest, turned)
   };
   // The distance of an echo from the line that was heard last there, if it belongs to it.
   std::optional<double> misses(const Return& firing, const Line& line, double newest,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/line_map.hpp"
 #include "saphira/registration/look.hpp"
@@ -39,10 +40,7 @@ class ObjectFinder {
   std::vector<maps::Feature> step(const maps::Map& map, const Field& field, std::uint64_t cycle,
                                   const std::vector<Look>& looks);
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("candidates", candidates_);
-  }
+  SAPHIRA_ARCHIVE(candidates_)
 
  private:
   struct Candidate {

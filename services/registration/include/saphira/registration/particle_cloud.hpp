@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/geometry/pose.hpp"
 
@@ -69,11 +70,7 @@ class ParticleCloud {
     return middle(weights());
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("random", random_)("moved", moved_)("length", length_)("turned", turned_)("particles",
-                                                                                particles_);
-  }
+  SAPHIRA_ARCHIVE(random_, moved_, length_, turned_, particles_)
 
  private:
   struct Particle {

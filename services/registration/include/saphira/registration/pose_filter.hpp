@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::registration {
@@ -46,10 +47,7 @@ class PoseFilter {
   /// Increases the uncertainty of the pose.
   void widen(double position, double heading);
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("state", state_)("covariance", covariance_)("errors", errors_);
-  }
+  SAPHIRA_ARCHIVE(state_, covariance_, errors_)
 
  private:
   State state_ = State::Zero();

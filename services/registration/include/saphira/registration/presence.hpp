@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/look.hpp"
 
@@ -62,10 +63,7 @@ class Presence {
     closed_ = std::move(closed);
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("watched", watched_)("closed", closed_);
-  }
+  SAPHIRA_ARCHIVE(watched_, closed_)
 
  private:
   struct Watched {

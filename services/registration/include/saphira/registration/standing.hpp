@@ -3,6 +3,7 @@
 #include <map>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/registration/search.hpp"
 
@@ -37,10 +38,7 @@ class Standing {
     sonars_.clear();
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("way", way_)("sonars", sonars_);
-  }
+  SAPHIRA_ARCHIVE(way_, sonars_)
 
  private:
   struct Sonar {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/registration/object_finder.hpp"
 #include "saphira/registration/particle_cloud.hpp"
 #include "saphira/registration/presence.hpp"
@@ -36,16 +37,10 @@ struct RegistrationState {
         presence(settings.presence),
         objects(settings.objects) {}
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("on", on)("state", state)("filter", filter)("confirmed", confirmed)("doubted", doubted)(
-        "carried", carried)("start", start)("other_map", other_map)("cycle", cycle)("odom", odom)(
-        "pose_in_odom", pose_in_odom)("moved", moved)("way", way)("turned", turned)("turns", turns)(
-        "done", done)("used", used)("since_readings", since_readings)("trial", trial)(
-        "weighed", weighed)("lead", lead)("cloud_score", cloud_score)("leads", leads)("led", led)(
-        "cloud", cloud)("search", search)("standing", standing)("presence", presence)(
-        "sure_closed", sure_closed)("agreed", agreed)("objects", objects)("output", output);
-  }
+  SAPHIRA_ARCHIVE(on, state, filter, confirmed, doubted, carried, start, other_map, cycle, odom,
+                  pose_in_odom, moved, way, turned, turns, done, used, since_readings, trial,
+                  weighed, lead, cloud_score, leads, led, cloud, search, standing, presence,
+                  sure_closed, agreed, objects, output)
 
   bool on = true;
   v1::RegistrationState state = v1::REGISTRATION_UNPLACED;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/base/process.hpp"
 #include "saphira/vision/vision.hpp"
@@ -53,12 +54,8 @@ class Core {
 
   ProcessTable& processes() { return processes_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("processes", processes_)("vision", vision_)("places", places_)("newer", newer_)(
-        "counted", counted_)("joined", joined_)("picture", picture_)("color", color_)("no_pictures",
-                                                                                      no_pictures_);
-  }
+  SAPHIRA_ARCHIVE(processes_, vision_, places_, newer_, counted_, joined_, picture_, color_,
+                  no_pictures_)
 
  private:
   /// The robot's pose in a cycle.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/lps/seen_thing.hpp"
 #include "saphira/vision/sight.hpp"
@@ -47,10 +48,7 @@ class Tracker {
   /// Another origin of odom: all places are void. Ids continue.
   void reset() { tracks_.clear(); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("tracks", tracks_)("next_id", next_id_);
-  }
+  SAPHIRA_ARCHIVE(tracks_, next_id_)
 
  private:
   using State = Eigen::Vector4d;  // x, y [m], velocity [m/s]

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/vision/arms.hpp"
 #include "saphira/vision/blobs.hpp"
 #include "saphira/vision/people.hpp"
@@ -30,10 +31,7 @@ class Vision {
   /// Another origin of odom: all places are void. Ids continue.
   void reset() { tracker_.reset(); }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("tracker", tracker_);
-  }
+  SAPHIRA_ARCHIVE(tracker_)
 
  private:
   void see_people(const Bands& bands, const std::vector<Sight>& people, std::uint64_t cycle,

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "saphira/base/archived.hpp"
+
 /// The robot's speed limit from the age of its inputs. An input is of use for as long as the robot
 /// cannot have moved further than a stated distance since: the older the input, the slower the
 /// robot.
@@ -43,10 +45,7 @@ class PeakAge {
   }
   double peak() const { return peak_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("peak", peak_);
-  }
+  SAPHIRA_ARCHIVE(peak_)
 
  private:
   // Per cycle: a peak halves in 2.3 s.

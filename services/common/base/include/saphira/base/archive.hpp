@@ -25,13 +25,9 @@ namespace saphira {
 
 /// Saves a state as a line of JSON, and restores it to the last bit: numbers, texts, enumerations,
 /// optional and shared values, variants, containers, matrices, and plain structs of them. A
-/// class with private state lists its members once, for both directions; as a template it needs no
-/// header:
+/// class with private state lists its members once, for both directions:
 ///
-///     template <class Archive>
-///     void archive(Archive& a) {
-///       a("estopped", estopped_)("wait", wait_);
-///     }
+///     SAPHIRA_ARCHIVE(estopped_, wait_)
 ///
 /// Saving changes no state. A text that does not fit exactly (of another version) gives a
 /// std::runtime_error that names the place and the expected value.
@@ -42,8 +38,6 @@ class Archive {
   /// Restores.
   explicit Archive(std::string_view text);
   ~Archive();
-  Archive(const Archive&) = delete;
-  Archive& operator=(const Archive&) = delete;
 
   bool restores() const { return restores_; }
   /// The saved state.
@@ -56,6 +50,16 @@ class Archive {
     item(value);
     leave();
     return *this;
+  }
+  /// Members of a class under their names, such as "estopped_, wait_".
+  template <class... T>
+  void listed(std::string_view names, T&... values) {
+    const auto next = [&names] {
+      const std::string_view name = names.substr(0, names.find(','));
+      names.remove_prefix(std::min(name.size() + 2, names.size()));
+      return name.substr(0, name.find_last_not_of('_') + 1);
+    };
+    ((*this)(next(), values), ...);
   }
   /// Those of a plain struct.
   template <class T>

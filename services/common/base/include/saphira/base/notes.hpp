@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
+
 namespace saphira {
 
 /// One line of a program's log, from a core: the shell adds time and name.
@@ -26,10 +28,7 @@ class Notes {
   bool empty() const { return lines_.empty(); }
   bool operator==(const Notes&) const = default;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("lines", lines_);
-  }
+  SAPHIRA_ARCHIVE(lines_)
 
  private:
   std::vector<Note> lines_;

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "saphira/base/archived.hpp"
+
 namespace saphira {
 
 /// A seeded generator with the same sequence on every machine and library (the distributions of
@@ -36,10 +38,7 @@ class Random {
     return mean + deviation * radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("state", state_)("increment", increment_);
-  }
+  SAPHIRA_ARCHIVE(state_, increment_)
 
  private:
   std::uint64_t state_ = 0;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 
@@ -45,11 +46,7 @@ class FreeFloor {
   /// first, from the robot's place. Empty: the lanes are near to all floor that can be reached.
   std::vector<Lane> next_lanes(const Vec2& from, const std::vector<Lane>& lanes) const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("sonars", sonars_)("corner", corner_)("evidence", evidence_)("seen", seen_)(
-        "driven", driven_)("passed", passed_);
-  }
+  SAPHIRA_ARCHIVE(sonars_, corner_, evidence_, seen_, driven_, passed_)
 
  private:
   static constexpr double kCell = 0.1;                                  // [m]

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "saphira/base/archived.hpp"
+
 namespace saphira {
 
 /// A position or displacement [m], x forward, y left (REP 103).
@@ -110,10 +112,7 @@ class ToFrame {
     return {c_ * dx + s_ * dy, -s_ * dx + c_ * dy};
   }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("x", x_)("y", y_)("c", c_)("s", s_);
-  }
+  SAPHIRA_ARCHIVE(x_, y_, c_, s_)
 
  private:
   double x_;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::lps {
@@ -37,10 +38,7 @@ class SonarBuffer {
   /// From the oldest to the newest.
   std::vector<SonarEntry> in_order() const;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("limit", limit_)("next", next_)("entries", entries_);
-  }
+  SAPHIRA_ARCHIVE(limit_, next_, entries_)
 
  private:
   void put(const SonarEntry& entry);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/maps/map.hpp"
 
 namespace saphira::maps {
@@ -50,10 +51,7 @@ class Editor {
   /// Replaces the map. Features with the same id in both keep it.
   void replace(Map map);
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("map", map_)("last_id", last_id_)("gone", gone_)("revision", revision_);
-  }
+  SAPHIRA_ARCHIVE(map_, last_id_, gone_, revision_)
 
  private:
   std::size_t index_of(std::uint32_t id) const;

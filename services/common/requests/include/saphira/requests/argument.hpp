@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira {
@@ -53,10 +54,7 @@ struct Argument {
 
   bool operator==(const Argument&) const = default;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("name", name)("kind", kind)("number", number)("text", text)("point", point)("frame", frame);
-  }
+  SAPHIRA_ARCHIVE(name, kind, number, text, point, frame)
 };
 using Arguments = std::vector<Argument>;
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/intentions/value.hpp"
 #include "saphira/intentions/world.hpp"
 
@@ -62,11 +63,7 @@ class Beliefs {
   /// Increases with each change of all().
   std::uint64_t revision() const { return revision_; }
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("set", set_)("claims", claims_)("conditions", conditions_)("claim_count", claim_count_)(
-        "revision", revision_)("set_revision", set_revision_)("looked", looked_);
-  }
+  SAPHIRA_ARCHIVE(set_, claims_, conditions_, claim_count_, revision_, set_revision_, looked_)
 
  private:
   struct Claim {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/intentions/work.hpp"
 
 namespace saphira::intentions {
@@ -32,11 +33,7 @@ class Endings {
   bool due(Ticks now) const;
   std::vector<Ending> take();
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("remembered", remembered_)("order", order_)("unsaved", unsaved_)("due", due_)("failed",
-                                                                                    failed_);
-  }
+  SAPHIRA_ARCHIVE(remembered_, order_, unsaved_, due_, failed_)
 
  private:
   std::size_t most_;

@@ -44,8 +44,6 @@ struct ActivityFile {
 /// cover a known one of another file, but not a built-in one.
 Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& functions,
                        const Registry& known);
-Loaded load_text(const std::string& file, std::string_view content, const Functions& functions,
-                 const Registry& known);
 
 /// Checks the names in compiled schemas against the present registry: for newly known behaviors, or
 /// changed parameters of a schema.

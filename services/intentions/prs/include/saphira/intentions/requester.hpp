@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/idl/intention.hpp"
 #include "saphira/intentions/world.hpp"
 
@@ -45,10 +46,7 @@ class Requester {
 
   bool operator==(const Requester&) const = default;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("state", state_)("since", since_);
-  }
+  SAPHIRA_ARCHIVE(state_, since_)
 
  private:
   enum class State : std::uint8_t { kHeard, kCutOff, kRecalled, kSwitchedOn, kLeft };

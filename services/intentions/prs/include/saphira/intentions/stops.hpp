@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "saphira/base/archived.hpp"
 #include "saphira/idl/common.hpp"
 #include "saphira/intentions/world.hpp"
 
@@ -38,11 +39,7 @@ class Stops {
   /// True once after a change of heeds().
   bool take_changed();
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("heeds", heeds_)("saved", saved_)("seen", seen_)("own", own_)("requester", requester_)(
-        "asked", asked_);
-  }
+  SAPHIRA_ARCHIVE(heeds_, saved_, seen_, own_, requester_, asked_)
 
  private:
   std::optional<v1::StopId> heeds_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saphira/base/archive.hpp"
+#include "saphira/base/archived.hpp"
 #include "saphira/idl/common.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/goal.hpp"
@@ -49,14 +50,9 @@ struct GoalEntry {
 
   bool operator==(const GoalEntry&) const = default;
 
-  template <class Archive>
-  void archive(Archive& a) {
-    a("goal", goal)("arguments", arguments)("fresh", fresh)("placed", placed)("changed", changed)(
-        "replaced", replaced)("unapproved", unapproved)("odom", odom)("order", order)(
-        "accepted", accepted)("ended", ended)("node", node)("status", status)(
-        "requester", requester)("before", before)("refusal", refusal)("refusal_code", refusal_code)(
-        "published", published)("published_at", published_at)("levels", levels)("tree", tree);
-  }
+  SAPHIRA_ARCHIVE(goal, arguments, fresh, placed, changed, replaced, unapproved, odom, order,
+                  accepted, ended, node, status, requester, before, refusal, refusal_code,
+                  published, published_at, levels, tree)
 };
 
 /// The progress of all open goals, and the values set by activities: the memory for a restart of
