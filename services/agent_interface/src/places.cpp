@@ -265,7 +265,7 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
   std::string meant = guess(name, names);
   if (meant.empty())
     meant = only_with_word_of(name, names);
-  out.unknown = {name, meant};
+  out.unknown = {name, meant, people};
   std::string text =
       std::string("I know no place ") + (people ? "or person " : "") + "called " + name;
   if (!meant.empty())

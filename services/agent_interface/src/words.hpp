@@ -23,6 +23,12 @@ inline constexpr const char* kNotUnderstood = "not-understood";
 /// The meaning of "wait": a task goes on afterwards.
 inline constexpr const char* kHold = "hold";
 
+/// The fact of agents: the place of a person.
+inline constexpr const char* kPlaceFact = "place_of";
+
+/// The answer after a no.
+inline constexpr const char* kLeft = "then I leave it";
+
 /// The claim that the robot is to go slowly.
 inline constexpr const char* kPace = "pace";
 
