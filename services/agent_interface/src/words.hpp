@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saphira/agent_interface/dialogue.hpp"
@@ -42,6 +43,14 @@ inline constexpr const char* kComma = ",";
 inline constexpr const char* kMark = ".";
 /// The words of a text, with the marks between them.
 std::vector<std::string> words_and_marks_of(std::string_view text);
+
+/// True for digits, with a point or without.
+bool is_number(const std::string& word);
+/// The number in words there, such as "seventeen", "twenty seven" and "one hundred and twenty", and
+/// how many words that are; 0: none.
+std::pair<int, std::size_t> spoken_number(const std::vector<std::string>& words, std::size_t at);
+/// Spoken numbers in a name as digits: "ej two thirty one" is "ej 231".
+std::string in_digits(const std::string& name);
 
 /// True for a stretched or repeated word ("stopstop"), one with two letters swapped, and a long one
 /// with a letter left out.
