@@ -490,6 +490,7 @@ class Errand : public LinePlayer {
                {"zone", [this](auto& in) { options_ = office_with_zones(rest(in)); }},
                {"claim", [this](auto& in) { claim(in); }},
                {"answers", [this](auto& in) { answers(rest(in)); }},
+               {"agents", [this](auto& in) { agents(rest(in)); }},
                {"ask", [this](auto& in) { goal_ = ask(in); }},
                {"also", [this](auto& in) { ask(in); }},
                {"cycles", [this](auto& in) { advance(read<int>(in), [] { return false; }); }},
@@ -570,6 +571,24 @@ class Errand : public LinePlayer {
     people_.add({line.substr(0, arrow), name, value_of(value.substr(0, bar)),
                  value.substr(std::min(bar + 3, value.size()))});
   }
+  /// Every question is answered with that place.
+  void agents(const std::string& place) {
+    place_ = place;
+    if (!questions_) {
+      bus::Node& node = whole().drive().node();
+      questions_.emplace(node.reader(bus::topics::kSolve));
+      replies_.emplace(node.writer(bus::topics::kSolved));
+    }
+  }
+  void reply() {
+    if (questions_)
+      for (const auto& sample : questions_->take())
+        replies_->write({.asker = sample.data.asker,
+                         .number = sample.data.number,
+                         .service = "board",
+                         .code = v1::ANSWER_DONE,
+                         .results = {bus::text("place", place_)}});
+  }
   intentions::GoalId ask(std::istringstream& in) {
     const auto functor = read<std::string>(in);
     return whole().ask(functor, arguments_of(rest(in)));
@@ -578,6 +597,7 @@ class Errand : public LinePlayer {
     return whole().advance_until(
         [&] {
           people_.listen(whole());
+          reply();
           for (const v1::Belief& one : whole().beliefs())
             believed_[one.name] = one.value;
           note_course();
@@ -642,6 +662,9 @@ class Errand : public LinePlayer {
   WholeOptions options_ = office();
   std::optional<Whole> whole_;
   People people_{{}};
+  std::string place_;  ///< that agents name
+  std::optional<bus::Reader<v1::Request>> questions_;
+  std::optional<bus::Writer<v1::Answer>> replies_;
   intentions::GoalId goal_;
   std::map<std::string, std::string> believed_;  ///< with the newest value, also of gone ones
 };
@@ -652,7 +675,7 @@ class Errands : public ::testing::TestWithParam<int> {};
 
 TEST_P(Errands, AreAsWritten) {
   const auto wanted = [](int number, const std::string&) { return number % kParts == GetParam(); };
-  EXPECT_EQ(play<Errand>("tests/drive/errands.txt", '#', wanted), 41);
+  EXPECT_EQ(play<Errand>("tests/drive/errands.txt", '#', wanted), 43);
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, Errands, ::testing::Range(0, kParts));

@@ -186,7 +186,8 @@ void DialogueShell::perform(const Dialogue::Outputs& out) {
         to_bus(one.request),
         [this, one](const v1::Answer& answer) {
           if (bus::ended(answer.code))
-            perform(dialogue_.answered_by(one, answer.service, saphira::from_bus(answer)));
+            perform(
+                dialogue_.answered_by(one, answer.service, saphira::from_bus(answer), situation_));
         },
         kAgentsPatience);
   for (const maps::Feature& feature : out.namings)

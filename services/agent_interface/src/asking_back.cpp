@@ -13,7 +13,6 @@ namespace {
 constexpr std::array kNamed{"place", "from", "to", "person", "owner", "other"};
 /// The same, and those for things.
 constexpr std::array kNames{"place", "from", "to", "person", "owner", "other", "object", "name"};
-constexpr const char* kLeft = "then I leave it";
 constexpr std::size_t kMostQuestions = 16;
 
 /// The end of a free text that may be an order of its own: "and then go home".

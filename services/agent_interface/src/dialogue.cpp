@@ -405,8 +405,10 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
 Dialogue::Outputs Dialogue::granted(const v1::Grant& grant, std::uint64_t self) {
   Outputs out;
   const std::optional<v1::StopId> before = std::exchange(known_stop_, grant.stop);
-  if (grant.estopped || (before && *before != grant.stop && grant.stop.asker != self))
-    add(tasks_.stopped(grant.stop_source.empty() ? "somebody" : grant.stop_source), out);
+  if (!grant.estopped && (!before || *before == grant.stop || grant.stop.asker == self))
+    return out;
+  std::erase_if(questions_, [](const Question& one) { return one.of_agents; });
+  add(tasks_.stopped(grant.stop_source.empty() ? "somebody" : grant.stop_source), out);
   return out;
 }
 
@@ -429,9 +431,12 @@ void Dialogue::begin_due(const Situation& situation, Outputs& out) {
             ? "it is too late for that: " + time_text(one.time) + one.steps.front().what
             : std::string();
     wanted_ = one.steps;
-    for (const Task& step : one.steps)
+    for (const Task& step : one.steps) {
       if (why.empty())
         why = hindrance(step.goal, situation, out);
+      if (std::exchange(out.unknown, {}).person && situation.agents.contains(kPlaceFact))
+        why.clear();  // the activity asks them
+    }
     wanted_.clear();
     if (why.empty())
       begin(std::move(one.steps), false, one.order, situation, out);
@@ -453,6 +458,7 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
     }
     pace_.reset();
   }
+  const bool stops = !steps.empty() && steps.front().goal.functor == "stop";
   Tasks::Outputs begun = tasks_.want(std::move(steps), utterance, drops);
   if (!begun.asks.empty()) {
     Question question;
@@ -460,7 +466,9 @@ void Dialogue::begin(std::vector<Task> steps, bool drops, const Utterance& utter
     question.no = "good";
     ask(std::move(question), utterance);
   } else if (!goes_on) {
-    std::erase_if(questions_, [](const Question& one) { return !one.drops.empty(); });
+    std::erase_if(questions_, [&](const Question& one) {
+      return !one.drops.empty() || (stops && one.of_agents);
+    });
   }
   const bool dropped = !begun.canceled.empty();
   add(std::move(begun), out);
@@ -624,7 +632,8 @@ void Dialogue::carry_out(Grammar::Understood understood, const Utterance& uttera
     ask_for_order(std::move(understood), utterance, out);
   } else {
     act_on_all(understood, utterance, situation, out);
-    note_name(std::move(understood), utterance, out);
+    if (!ask_place(understood, utterance, situation, out))
+      note_name(std::move(understood), utterance, out);
   }
 }
 

@@ -9,7 +9,7 @@
 namespace saphira::agent_interface {
 namespace {
 
-constexpr std::size_t kLongestName = 4;  // words: "EJ two thirty one"
+constexpr std::size_t kLongestName = 5;  // words: "E J two thirty one"
 constexpr std::size_t kMostMatches = 1000;
 constexpr std::size_t kMostSteps = 8;  // of a sequence
 
@@ -47,13 +47,22 @@ std::vector<Grammar::Finder::Match> Grammar::Finder::entry(const Node& node,
       match.slots[node.slot] = one.value;
     matches.push_back(std::move(match));
   }
-  if (node.kind == Node::Kind::number)
-    if (const auto decimal = this->decimal(words, from.end)) {
-      matches.push_back(from);
-      matches.back().end += decimal->first;
-      matches.back().literal += decimal->first;
-      matches.back().slots[node.slot] = decimal->second;
-    }
+  if (node.kind != Node::Kind::number)
+    return matches;
+  if (const auto [number, count] = spoken_number(words, from.end); number > 0) {
+    Match match = from;
+    match.end += count;
+    match.literal += count;
+    match.slots[node.slot] = std::to_string(number);
+    if (std::ranges::find(matches, match.end, &Match::end) == matches.end())
+      matches.push_back(std::move(match));
+  }
+  if (const auto decimal = this->decimal(words, from.end)) {
+    matches.push_back(from);
+    matches.back().end += decimal->first;
+    matches.back().literal += decimal->first;
+    matches.back().slots[node.slot] = decimal->second;
+  }
   return matches;
 }
 
@@ -100,14 +109,17 @@ std::vector<Grammar::Finder::Match> Grammar::Finder::name(const Node& node,
                                                           const Match& from) const {
   std::vector<Match> matches;
   std::string text;
-  for (std::size_t length = 1; length <= kLongestName && from.end + length <= words.size();
-       ++length) {
-    const std::string& word = words[from.end + length - 1];
-    if (!may_be_name(word))
+  std::size_t end = from.end;
+  for (std::size_t length = 1; length <= kLongestName && end < words.size(); ++length) {
+    // "Two hundred and twelve" has a word that no name has.
+    const auto [number, count] = spoken_number(words, end);
+    const bool hundreds = number >= 100;
+    if (!hundreds && !may_be_name(words[end]))
       break;
-    text += (text.empty() ? "" : " ") + word;
+    text += (text.empty() ? "" : " ") + (hundreds ? std::to_string(number) : words[end]);
+    end += hundreds ? count : 1;
     matches.push_back(from);
-    matches.back().end += length;
+    matches.back().end = end;
     matches.back().slots[node.slot] = text;
   }
   return matches;

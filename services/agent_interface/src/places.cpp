@@ -48,38 +48,6 @@ std::string letters_of(std::string_view name) {
   return letters;
 }
 
-/// Spoken numbers as digits: "ej two thirty one" is "ej 231", "two hundred five" is "205".
-std::string in_digits(const std::string& name) {
-  constexpr std::array kOnes{"zero",    "one",     "two",       "three",    "four",
-                             "five",    "six",     "seven",     "eight",    "nine",
-                             "ten",     "eleven",  "twelve",    "thirteen", "fourteen",
-                             "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"};
-  constexpr std::array kTens{"twenty", "thirty",  "forty",  "fifty",
-                             "sixty",  "seventy", "eighty", "ninety"};
-  std::vector<std::string> words;
-  bool counts = false;   // the word before is a number
-  std::size_t open = 0;  // its zeros that the next word may fill
-  for (const std::string& word : words_of(name)) {
-    const auto one = std::find(kOnes.begin(), kOnes.end(), word);
-    const auto ten = std::find(kTens.begin(), kTens.end(), word);
-    const bool hundred = counts && word == "hundred";
-    const std::string digits = one != kOnes.end() ? std::to_string(one - kOnes.begin())
-                               : ten != kTens.end()
-                                   ? std::to_string(20 + 10 * (ten - kTens.begin()))
-                               : hundred ? "00"
-                                         : "";
-    if (digits.empty() || !counts)
-      words.push_back(digits.empty() ? word : digits);
-    else if (digits.size() <= open)
-      words.back().replace(words.back().size() - digits.size(), digits.size(), digits);
-    else
-      words.back() += digits;
-    counts = !digits.empty();
-    open = hundred ? 2 : ten != kTens.end() ? 1 : 0;
-  }
-  return saphira::joined(words, " ");
-}
-
 /// The number of a room as people say it: "231", "room 231", "number 231". Empty: no such words.
 std::string room_number(const std::string& name) {
   std::vector<std::string> words = words_of(name);
@@ -265,7 +233,7 @@ std::string Dialogue::unknown(const std::string& name, bool people, const Situat
   std::string meant = guess(name, names);
   if (meant.empty())
     meant = only_with_word_of(name, names);
-  out.unknown = {name, meant};
+  out.unknown = {name, meant, people};
   std::string text =
       std::string("I know no place ") + (people ? "or person " : "") + "called " + name;
   if (!meant.empty())

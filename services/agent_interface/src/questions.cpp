@@ -372,23 +372,61 @@ bool Dialogue::ask_agents(Request request, const std::string& unknown, const Utt
   return true;
 }
 
+bool Dialogue::ask_place(const Grammar::Understood& understood, const Utterance& utterance,
+                         const Situation& situation, Outputs& out) {
+  const std::string person = out.unknown.name;
+  Outputs asking;
+  if (!out.unknown.person ||
+      !ask_agents({kPlaceFact, {text("person", person), open_slot("place")}},
+                  "nobody has told me where " + person + " is", utterance, situation, asking))
+    return false;
+  out.said.pop_back();  // the refusal
+  out.said.push_back(asking.said.back());
+  out.asks = std::move(asking.asks);
+  Question question;
+  question.sentence = understood;
+  question.names = {person};
+  question.no = kLeft;
+  question.of_agents = true;
+  ask(std::move(question), utterance);
+  return true;
+}
+
 Dialogue::Outputs Dialogue::answered_by(const OpenQuestion& question, const std::string& agent,
-                                        const Answer& answer) {
-  Outputs out;
-  const bool known = answer.code == AnswerCode::done && !answer.results.empty();
+                                        const Answer& answer, Situation situation) {
+  const Utterance& asked = question.asked;
+  const bool of_place = question.request.functor == kPlaceFact;
+  bool known = answer.code == AnswerCode::done && !answer.results.empty();
   std::string text = known ? agent + " says: " : "no agent knows it";
-  for (const Argument& one : known ? answer.results : Arguments{})
+  for (const Argument& one : known ? answer.results : Arguments{}) {
+    const bool is_place = of_place && one.name == "place";
     text += (text.ends_with(": ") ? "" : ", ") +
-            (one.name == "place" && question.request.functor == "place_of"
-                 ? question.request.arguments.front().text + " is at " + one.text
-                 : describe(Arguments{one}));
+            (is_place ? question.request.arguments.front().text + " is at " + one.text
+                      : describe(Arguments{one}));
+    if (is_place && !situation.map.features.empty() &&
+        place(lowered(one.text), situation).empty()) {
+      known = false;
+      text = agent + " names " + quoted(one.text) + ", which is no place of my map";
+    }
+  }
   if (!answer.text.empty())
     text += (known ? "; " : ": ") + answer.text;
-  if (known)
-    say(question.asked, text, true, out);
-  else
-    refuse(question.asked, text, out);
-  return out;
+  const auto waits = std::ranges::find_if(questions_, [&](const Question& one) {
+    return one.of_agents && one.raised_by.id == asked.id;
+  });
+  return changing([&](Outputs& out) {
+    if (waits == questions_.end()) {
+      known ? say(asked, text, true, out) : refuse(asked, text, out);
+      return;
+    }
+    Grammar::Understood sentence = std::move(waits->sentence);
+    questions_.erase(waits);
+    situation.agents.clear();
+    if (known)
+      situation.findable.push_back(question.request.arguments.front().text);
+    say(asked, text, false, out);
+    carry_out(std::move(sentence), asked, situation, out);
+  });
 }
 
 bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utterance,
@@ -418,7 +456,7 @@ bool Dialogue::question_about_world(const Meaning& meaning, const Utterance& utt
         all = way_to(thing.name, situation);
     const std::string unknown =
         "nobody has told me " + (holder ? "who has the " + person : "where " + person + " is");
-    Request request{"place_of", {text("person", person), open_slot("place")}};
+    Request request{kPlaceFact, {text("person", person), open_slot("place")}};
     if (all.empty() && !holder &&
         ask_agents(std::move(request), unknown, utterance, situation, out))
       return true;

@@ -306,12 +306,16 @@ bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
     doubt(Kind::knows_where, slot(meaning, "other"));
   } else if (meaning.functor == "forget") {
     const std::string what = slot(meaning, "what");
+    const std::string there = what == "mine" ? place(person, situation) : std::string();
     for (const Advice& one : knowledge_.all())
-      if (one.about == person && (what == "all"    ? one.kind != Kind::hazard
-                                  : what == "mine" ? one.kind != Kind::hazard &&
-                                                         same_person(one.speaker, utterance.speaker)
-                                  : what == "office" ? one.kind == Kind::office_of
-                                                     : one.kind == Kind::person_at))
+      if (!there.empty() && one.value == there && same_person(one.speaker, utterance.speaker))
+        wrong.push_back(one);
+      else if (one.about == person &&
+               (what == "all" ? one.kind != Kind::hazard
+                : what == "mine"
+                    ? one.kind != Kind::hazard && same_person(one.speaker, utterance.speaker)
+                : what == "office" ? one.kind == Kind::office_of
+                                   : one.kind == Kind::person_at))
         wrong.push_back(one);
     if (wrong.empty())
       unknown = what == "mine" ? "you have told me nothing about " + person

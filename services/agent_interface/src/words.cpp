@@ -1,6 +1,7 @@
 #include "words.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <ctime>
 
@@ -8,6 +9,70 @@
 #include "saphira/base/text.hpp"
 
 namespace saphira::agent_interface {
+namespace {
+
+constexpr std::array kOnes{"zero",    "one",     "two",       "three",    "four",
+                           "five",    "six",     "seven",     "eight",    "nine",
+                           "ten",     "eleven",  "twelve",    "thirteen", "fourteen",
+                           "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"};
+constexpr std::array kTens{"twenty", "thirty",  "forty",  "fifty",
+                           "sixty",  "seventy", "eighty", "ninety"};
+
+/// Of "zero" to "nineteen"; otherwise -1.
+int one_of(std::string_view word) {
+  const auto found = std::ranges::find(kOnes, word);
+  return found == kOnes.end() ? -1 : static_cast<int>(found - kOnes.begin());
+}
+
+/// Of "twenty" to "ninety-nine", in one word; otherwise -1.
+int ten_of(std::string_view word) {
+  const std::size_t hyphen = std::min(word.find('-'), word.size());
+  const auto found = std::ranges::find(kTens, word.substr(0, hyphen));
+  const int one = hyphen == word.size() ? 0 : one_of(word.substr(hyphen + 1));
+  return found == kTens.end() || one < 0 || one > 9
+             ? -1
+             : 20 + 10 * static_cast<int>(found - kTens.begin()) + one;
+}
+
+}  // namespace
+
+std::pair<int, std::size_t> spoken_number(const std::vector<std::string>& words, std::size_t at) {
+  const auto word = [&](std::size_t i) -> std::string_view {
+    return i < words.size() ? std::string_view(words[i]) : std::string_view();
+  };
+  std::pair<int, std::size_t> number{0, 0};
+  const int hundreds = word(at) == "a" ? 1 : one_of(word(at));
+  if (hundreds > 0 && hundreds < 10 && word(at + 1) == "hundred")
+    number = {100 * hundreds, 2};
+  const std::size_t more = number.second + (number.second > 0 && word(at + 2) == "and" ? 1 : 0);
+  const int ten = ten_of(word(at + more));
+  const int one = one_of(word(at + more + (ten > 0 ? 1 : 0)));
+  if (ten > 0 && ten % 10 == 0 && one > 0 && one < 10)
+    return {number.first + ten + one, more + 2};
+  if (ten > 0 || (one >= 0 && (one > 0 || more == 0)))
+    return {number.first + (ten > 0 ? ten : one), more + 1};
+  return number;
+}
+
+std::string in_digits(const std::string& name) {
+  const std::vector<std::string> said = words_of(name);
+  std::vector<std::string> words;
+  bool counts = false;  // the word before is a number
+  for (std::size_t at = 0; at < said.size();) {
+    const auto [number, count] = spoken_number(said, at);
+    const std::string digits = count > 0             ? std::to_string(number)
+                               : is_number(said[at]) ? said[at]
+                                                     : "";
+    if (counts && !digits.empty())
+      words.back() += digits;
+    else
+      words.push_back(digits.empty() ? said[at] : digits);
+    counts = !digits.empty();
+    at += std::max<std::size_t>(count, 1);
+  }
+  return saphira::joined(words, " ");
+}
+
 std::string slot(const Meaning& meaning, const std::string& name) {
   const auto found = meaning.slots.find(name);
   return found == meaning.slots.end() ? std::string() : found->second;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saphira/agent_interface/dialogue.hpp"
@@ -23,6 +24,12 @@ inline constexpr const char* kNotUnderstood = "not-understood";
 /// The meaning of "wait": a task goes on afterwards.
 inline constexpr const char* kHold = "hold";
 
+/// The fact of agents: the place of a person.
+inline constexpr const char* kPlaceFact = "place_of";
+
+/// The answer after a no.
+inline constexpr const char* kLeft = "then I leave it";
+
 /// The claim that the robot is to go slowly.
 inline constexpr const char* kPace = "pace";
 
@@ -36,6 +43,14 @@ inline constexpr const char* kComma = ",";
 inline constexpr const char* kMark = ".";
 /// The words of a text, with the marks between them.
 std::vector<std::string> words_and_marks_of(std::string_view text);
+
+/// True for digits, with a point or without.
+bool is_number(const std::string& word);
+/// The number in words there, such as "seventeen", "twenty seven" and "one hundred and twenty", and
+/// how many words that are; 0: none.
+std::pair<int, std::size_t> spoken_number(const std::vector<std::string>& words, std::size_t at);
+/// Spoken numbers in a name as digits: "ej two thirty one" is "ej 231".
+std::string in_digits(const std::string& name);
 
 /// True for a stretched or repeated word ("stopstop"), one with two letters swapped, and a long one
 /// with a letter left out.

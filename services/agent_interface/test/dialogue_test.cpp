@@ -91,16 +91,76 @@ TEST_F(DialogueTest, AnOpenQuestionIsPutToTheAgentsThatKnowSuchFacts) {
   const OpenQuestion asked = last.asks.front();
   EXPECT_EQ(describe(asked.request), "place_of person=\"karen\" place=?");
   EXPECT_EQ(asked.request.deadline, kAgentsPatience);
-  last = dialogue.answered_by(asked, "badges", {AnswerCode::done, "", {text("place", "EJ-231")}});
+  last = dialogue.answered_by(asked, "badges", {AnswerCode::done, "", {text("place", "EJ-231")}},
+                              situation);
   EXPECT_EQ(answer(), "badges says: karen is at EJ-231");
   EXPECT_EQ(last.said.at(0).answers, asked.asked.id);
   EXPECT_TRUE(last.said.at(0).end);
-  last = dialogue.answered_by(asked, "badges", {AnswerCode::refused, "no badge of hers"});
+  last =
+      dialogue.answered_by(asked, "badges", {AnswerCode::refused, "no badge of hers"}, situation);
   EXPECT_EQ(answer(), "no agent knows it: no badge of hers");
   EXPECT_TRUE(last.said.at(0).refused);
   hear("Flakey, Karen is in EJ-233");
   EXPECT_EQ(said("Flakey, where is Karen?"), "Alice said that karen is at EJ-233");
   EXPECT_TRUE(last.asks.empty());
+}
+
+TEST_F(DialogueTest, AnErrandWaitsForTheAgentsThatMayKnowThePerson) {
+  const auto answered = [&](Answer answer) {
+    last = dialogue.answered_by(OpenQuestion(last.asks.at(0)), "badges", answer, situation);
+    return goals();
+  };
+  const Answer known{AnswerCode::done, "", {text("place", "EJ-231")}};
+  hear("Flakey, get the report from Zoe");
+  EXPECT_TRUE(last.asks.empty());
+  situation.agents = {{"place_of", "badges"}};
+  hear("Flakey, get the report from Zoe");
+  EXPECT_TRUE(last.goals.empty());
+  ASSERT_EQ(last.said.size(), 1u);
+  EXPECT_FALSE(last.said[0].end);
+  EXPECT_EQ(describe(last.asks.at(0).request), "place_of person=\"zoe\" place=?");
+  EXPECT_EQ(answered(known),
+            "deliver object=\"the report\" from=\"zoe\" to=\"upper corridor\" receiver=\"alice\"");
+  hear("Flakey, go to Zoe");
+  EXPECT_EQ(answered(known), "find-person name=\"zoe\"");
+  // A place that the map does not have is none, and an answer alone begins nothing.
+  for (const char* const place : {"", "Paris"}) {
+    hear("Flakey, go to Zoe");
+    EXPECT_EQ(answered({AnswerCode::done, "", {text("place", place)}}), "");
+    EXPECT_TRUE(last.said.back().refused);
+    EXPECT_TRUE(last.asks.empty());
+    hear("Flakey, where is Zoe?");
+    EXPECT_EQ(answered({AnswerCode::done, "", {text("place", place)}}), "");
+    EXPECT_TRUE(last.said.back().refused);
+  }
+  hear("Flakey, go to Zoe");
+  EXPECT_EQ(answered({AnswerCode::refused, "no badge of hers"}), "");
+  EXPECT_TRUE(last.said.back().refused);
+  // A stop ends the order, and so does another name.
+  hear("Flakey, go to Zoe");
+  const Dialogue::Outputs asked = last;
+  hear("Flakey, stop", "Bob");
+  last = asked;
+  EXPECT_EQ(answered(known), "");
+  hear("Flakey, go to Zoe");
+  const Dialogue::Outputs again = last;
+  hear("Flakey, no, EJ-233");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
+  last = again;
+  EXPECT_EQ(answered(known), "");
+}
+
+TEST_F(DialogueTest, AnOrderForLaterLetsItsActivityAskTheAgents) {
+  situation.agents = {{"place_of", "badges"}};
+  situation.now = now;
+  hear("Flakey, in ten minutes go to Zoe");
+  const OpenQuestion asked = last.asks.at(0);
+  last = dialogue.answered_by(asked, "badges", {AnswerCode::done, "", {text("place", "EJ-231")}},
+                              situation);
+  EXPECT_EQ(goals(), "");
+  situation.now += 601.0;
+  last = dialogue.come_due(situation);
+  EXPECT_EQ(goals(), "find-person name=\"zoe\"");
 }
 
 TEST_F(DialogueTest, AMeaningThatOnlyAnAgentKnowsIsAskedOfIt) {
@@ -112,7 +172,7 @@ TEST_F(DialogueTest, AMeaningThatOnlyAnAgentKnowsIsAskedOfIt) {
   EXPECT_EQ(said("Flakey, what is the weather?"), "I ask oracle, for 5 s at most");
   EXPECT_EQ(describe(last.asks.at(0).request), "weather day=?");
   last = dialogue.answered_by(last.asks.at(0), "oracle",
-                              {AnswerCode::done, "fine", {text("day", "today")}});
+                              {AnswerCode::done, "fine", {text("day", "today")}}, situation);
   EXPECT_EQ(answer(), "oracle says: day=\"today\"; fine");
 }
 

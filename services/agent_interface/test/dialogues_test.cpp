@@ -222,7 +222,7 @@ TEST(Dialogues, AreAsWritten) {
   // The machine's clock gives the time in sentences.
   setenv("TZ", "UTC", 1);
   tzset();
-  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 115);
+  EXPECT_EQ(test::play<Conversation>("services/agent_interface/test/dialogues.txt"), 118);
 }
 
 }  // namespace

@@ -301,8 +301,10 @@ void Service::publish(const Core::Outputs& said) {
     v1::Request asked = to_bus(question);
     asked.stamp = ports_.stamp();
     const auto hear = [this, number = question.number](const v1::Answer& answer) {
-      if (bus::ended(answer.code))
-        answers_.emplace_back(number, saphira::from_bus(answer));
+      if (!bus::ended(answer.code))
+        return;
+      answers_.emplace_back(number, saphira::from_bus(answer));
+      answers_.back().second.results.push_back(text("agent", answer.service));
     };
     agents_.send(std::move(asked), hear, kReply, kReply);
   }

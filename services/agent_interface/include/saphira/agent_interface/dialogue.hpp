@@ -113,6 +113,7 @@ class Dialogue {
   struct UnknownName {
     std::string name{};   ///< empty: none
     std::string meant{};  ///< the one that the robot asks back for instead; empty: none
+    bool person = false;  ///< it may be one
   };
   struct Outputs {
     std::vector<Said> said;
@@ -132,8 +133,10 @@ class Dialogue {
   /// A program that has spoken has ended or has withdrawn its words: its tasks end.
   Outputs left(const ProgramId& program);
   Outputs ended(const Outcome& outcome);
-  /// The end of a question that was put to agents, and the agent that has answered.
-  Outputs answered_by(const OpenQuestion& question, const std::string& agent, const Answer& answer);
+  /// The end of a question that was put to agents, and the agent that has answered. An order that
+  /// waits for it begins, or is refused.
+  Outputs answered_by(const OpenQuestion& question, const std::string& agent, const Answer& answer,
+                      Situation situation);
   /// A stop that is not of this dialogue (`self`), or an emergency stop, ends orders for a later
   /// time. The first grant shows an earlier stop.
   Outputs granted(const v1::Grant& grant, std::uint64_t self);
@@ -181,6 +184,7 @@ class Dialogue {
     std::string no{};                  ///< the answer to a no; empty: the sentence is carried out
     std::vector<std::string> names{};  ///< in the sentence, for which another one may be said
     bool asked = true;  ///< false: the robot does it; only a correction is an answer, at any time
+    bool of_agents = false;  ///< the sentence waits for their answer, or for another name
   };
   struct Gone {  ///< a person without a known place: it was withdrawn
     std::string person;
@@ -254,6 +258,10 @@ class Dialogue {
   /// Adds a rule for as long as the sentence that is being heard is done. False: it is refused.
   bool add_rule(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                 Rules& rules, Outputs& out) const;
+  /// Asks agents for the place of the person whose name made the order fail; the order waits.
+  /// False: there is no such name or agent.
+  bool ask_place(const Grammar::Understood& understood, const Utterance& utterance,
+                 const Situation& situation, Outputs& out);
   /// Puts a question to the agents that know such facts. False: there is none.
   bool ask_agents(Request request, const std::string& unknown, const Utterance& utterance,
                   const Situation& situation, Outputs& out) const;
