@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
+
+#include "saphira/base/namesakes.hpp"
 
 namespace saphira {
 namespace {
@@ -64,6 +68,51 @@ TEST(EnumPairs, TheFirstPairCounts) {
 TEST(EnumPairs, WhatHasNoPairIsWhatTheTableOrTheCallerSays) {
   EXPECT_EQ(kTable.theirs(static_cast<Weather>(7)), Umbrella::none);
   EXPECT_EQ(kTable.ours(static_cast<Umbrella>(7), Weather::damp), Weather::damp);
+}
+
+struct Window {
+  double x = 0.0;
+};
+struct Room {
+  std::string name = "none";
+  int number = -1;
+  Lamp lamp = Lamp::on;
+  Window door;
+  std::vector<Window> windows;
+  bool locked = true;
+};
+struct Door {
+  float x = 0.0F;
+};
+struct RoomOnTheBus {
+  unsigned char number = 0;
+  OnTheBus lamp = LAMP_OFF;
+  Door door;
+  std::vector<Door> windows;
+  std::vector<int> locked;
+  std::string label;
+};
+
+TEST(Namesakes, TakeValuesOfTheSameMeaning) {
+  const auto there =
+      translated<RoomOnTheBus>(Room{"hall", 7, Lamp::broken, {1.5}, {{2.0}, {3.0}}, false});
+  EXPECT_EQ(there.number, 7);
+  EXPECT_EQ(there.lamp, LAMP_BROKEN);
+  EXPECT_EQ(there.door.x, 1.5F);
+  ASSERT_EQ(there.windows.size(), 2U);
+  EXPECT_EQ(there.windows[1].x, 3.0F);
+  EXPECT_TRUE(there.label.empty() && there.locked.empty()) << "of another name, of another kind";
+  Room back{"here", 1, Lamp::on, {0.0}, {{9.0}}, true};
+  take(back, there);
+  EXPECT_EQ(back.name, "here");
+  EXPECT_TRUE(back.locked);
+  EXPECT_EQ(back.number, 7);
+  EXPECT_EQ(back.lamp, Lamp::broken);
+  EXPECT_EQ(back.windows.size(), 2U) << "in the place of those that were there";
+  RoomOnTheBus newer;
+  newer.lamp = static_cast<OnTheBus>(9);
+  take(back, newer);
+  EXPECT_EQ(back.lamp, Lamp::broken) << "an unknown enumerator";
 }
 
 }  // namespace
