@@ -20,8 +20,6 @@ class Presence {
     std::string last;
     double now = 0.0;
     in >> verb;
-    if (verb == "answered")
-      return clients_.answered("a");
     if (verb == "busy" || verb == "silent") {
       in >> more;
       (verb == "busy" ? state_.busy : state_.silent) = more == "yes";

@@ -193,6 +193,11 @@ void Link::open(double now) {
                    now);
     if (errno == ECONNREFUSED)
       return close(address_.name + ": nobody listens there (does the simulator run?)", now);
+    if (errno == EPERM)
+      return close(address_.name +
+                       ": another user of this machine listens there, in a folder that "
+                       "everybody may write",
+                   now);
     return fail(address_.name);
   }
   if (address_.kind == Address::Kind::ros2)

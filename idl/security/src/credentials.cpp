@@ -176,6 +176,13 @@ std::string trouble_of_key(const Credentials& credentials) {
   if (is_open(files.site_key))
     return files.site_key + ": other users of this machine may read it, and announce programs in " +
            "the name of the site then; chmod 600 " + files.site_key;
+  const fs::path own = fs::path(files.key).parent_path();
+  for (const fs::path& folder : {own, own.parent_path()})
+    if (struct stat state{};
+        ::stat(folder.c_str(), &state) == 0 && (state.st_mode & (S_IWGRP | S_IWOTH)) != 0)
+      return folder.string() +
+             ": other users of this machine may put other keys there; chmod go-w " +
+             folder.string();
   return {};
 }
 

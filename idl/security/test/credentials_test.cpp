@@ -102,6 +102,19 @@ TEST_F(CredentialsTest, AKeyThatOthersMayReadIsTold) {
   }
 }
 
+TEST_F(CredentialsTest, AFolderThatOthersMayWriteIsTold) {
+  const Credentials good = load_credentials(made_, "cli", kNow);
+  for (const std::string& folder : {made_, made_ + "/operator"})
+    for (const fs::perms others : {fs::perms::group_write, fs::perms::others_write}) {
+      fs::permissions(folder, others, fs::perm_options::add);
+      EXPECT_EQ(
+          trouble_of_key(good),
+          folder + ": other users of this machine may put other keys there; chmod go-w " + folder);
+      fs::permissions(folder, others, fs::perm_options::remove);
+    }
+  EXPECT_EQ(trouble_of_key(good), "");
+}
+
 TEST_F(CredentialsTest, AProgramNeedsItsRole) {
   const std::string text = loading(kNow, "bridge");
   EXPECT_TRUE(says(text, "has credentials of operator, and bridge needs those of bridge")) << text;
