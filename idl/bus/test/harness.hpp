@@ -50,8 +50,6 @@ class OnEachBus : public testing::TestWithParam<std::string> {
     Reader<T> reader = b->reader(topic);
     return {std::move(a), std::move(b), std::move(writer), std::move(reader)};
   }
-  /// Duration of a check for absence. Samples of the memory transport arrive at once.
-  milliseconds absence() const { return milliseconds(GetParam() == "dds" ? 200 : 1); }
 
  private:
   std::shared_ptr<MemoryBus> memory_ = make_memory_bus();
