@@ -111,8 +111,15 @@ int main(int argc, char** argv) {
         }
         if (const std::string exposed = web::exposure(options.server.place); !exposed.empty())
           std::fprintf(stderr, "saphira-console: %s\n", exposed.c_str());
-        if (node.dry_run)  // its files were checked
+        if (node.dry_run) {  // its files were checked; its role says what it may write
+          options.server.place.port = 0;
+          options.key_file.clear();
+          options.box.clear();
+          options.simulator.clear();
+          options.dial.reset();
+          const console::Gateway gateway(node, options);
           return static_cast<int>(bus::kExitOk);
+        }
         if (!screenshot.file.empty())
           options.server.place.port = 0;
         else

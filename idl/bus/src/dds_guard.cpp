@@ -38,6 +38,11 @@ void check_credentials(const NodeOptions& options) {
   Guard::make(options);
 }
 
+void check_role(const NodeOptions& options, const char* topic, bool writes) {
+  if (const auto guard = Guard::make(options))
+    guard->check_own(topic, writes);
+}
+
 Guard::Guard(std::string folder, security::Credentials credentials)
     : folder_(std::move(folder)),
       credentials_(std::move(credentials)),
@@ -85,6 +90,11 @@ std::string Guard::why_not(const Identity& identity, const std::string& topic, b
     return {};
   return identity.text() + " may not " + (writes ? "write" : "read") + " the topic " + topic +
          ": that is for " + (writes ? roles.those_that_write(topic) : roles.those_that_read(topic));
+}
+
+void Guard::check_own(const char* topic, bool writes) const {
+  if (const std::string why = why_not(own_, topic, writes); !why.empty())
+    throw std::invalid_argument(why);
 }
 
 std::string Guard::revoked(const std::uint8_t* prefix) const {

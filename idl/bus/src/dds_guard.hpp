@@ -37,6 +37,8 @@ class Guard {
 
   /// The reason why a program may not write or read a topic, in words; empty where it may.
   std::string why_not(const Identity& identity, const std::string& topic, bool writes) const;
+  /// Throws where this program may not: Fast DDS would refuse it without a word.
+  void check_own(const char* topic, bool writes) const;
   const Identity& own() const { return own_; }
   const std::string& site() const { return credentials_.subject.site; }
 

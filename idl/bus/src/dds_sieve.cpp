@@ -99,11 +99,14 @@ class Sieve : public transport::ChainingTransport {
       if (introduces && !announces)
         descriptor_.entrance->limit(
             sender, security::robot_of({reinterpret_cast<const char*>(buffer), sound}));
-      if (announces && fate == Entrance::Fate::waits) {
-        std::vector<rtps::octet> shortened(buffer, buffer + sound);
-        set_lease(shortened.data(), shortened.size(), Entrance::kLease);
+      if (announces) {
+        std::vector<rtps::octet> own(buffer, buffer + sound);
+        if (fate == Entrance::Fate::waits)
+          set_lease(own.data(), own.size(), Entrance::kLease);
+        else
+          renumber(own.data(), own.size());  // so that its own lease counts again
         hear(remote);
-        pass(next, shortened, local, remote);
+        pass(next, own, local, remote);
         return;
       }
     }

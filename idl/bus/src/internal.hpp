@@ -105,6 +105,8 @@ std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options, std::u
                                               std::shared_ptr<Wake> wake);
 /// Throws where the credentials that the options name are unusable.
 void check_credentials(const NodeOptions& options);
+/// Throws where the role that the options' credentials give may not write, or read, the topic.
+void check_role(const NodeOptions& options, const char* topic, bool writes);
 std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
                                                  std::shared_ptr<MemoryBus> bus,
                                                  std::shared_ptr<Wake> wake);

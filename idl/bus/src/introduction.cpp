@@ -267,4 +267,17 @@ void set_lease(std::uint8_t* message, std::size_t size, std::chrono::seconds lea
   }
 }
 
+void renumber(std::uint8_t* message, std::size_t size) {
+  std::size_t next = 0;
+  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
+    const Submessage part = submessage(message, size, at, next);
+    if (!part.has_data() || !part.is_of(kParticipantWriter))
+      continue;
+    const std::uint64_t number = part.word(16) + 1;
+    std::uint8_t* const low = message + at + kSubmessageHeader + 16;
+    for (unsigned i = 0; i < 4; ++i)
+      low[part.little ? i : 3 - i] = static_cast<std::uint8_t>(number >> 8U * i);
+  }
+}
+
 }  // namespace saphira::bus::internal

@@ -36,4 +36,8 @@ std::optional<Announced> announced(const std::uint8_t* message, std::size_t size
 /// In a message that speaks_for_itself(): each announcement is good for so long, from its arrival.
 void set_lease(std::uint8_t* message, std::size_t size, std::chrono::seconds lease);
 
+/// In a sound message: each announcement has the next number. Fast DDS ignores one whose number it
+/// knows, and would keep the lease of the first one.
+void renumber(std::uint8_t* message, std::size_t size);
+
 }  // namespace saphira::bus::internal

@@ -332,6 +332,8 @@ class MemoryTransport : public Transport {
  private:
   Common common(const char* topic, const Policies& policies, const TypeInfo& type,
                 bool writer) const {
+    if (options_.dry_run)
+      check_role(options_, topic, writer);
     EndpointEntry entry;
     entry.topic = topic;
     entry.type = type.name;

@@ -115,6 +115,21 @@ TEST(Announcement, ItsTimeIsSet) {
   }
 }
 
+TEST(Announcement, IsTheNextOne) {
+  const std::string first = announcement({guid_of(kJohn), kEndParameter});
+  std::string next = first;
+  renumber(reinterpret_cast<std::uint8_t*>(next.data()), next.size());
+  constexpr std::size_t kNumber = 20 + 4 + 16;  // its low word, little-endian
+  std::string expected = first;
+  ++expected[kNumber];
+  EXPECT_EQ(next, expected);
+  next[kNumber] = next[kNumber + 1] = static_cast<char>(0xff);
+  renumber(reinterpret_cast<std::uint8_t*>(next.data()), next.size());
+  expected[kNumber] = expected[kNumber + 1] = 0;
+  ++expected[kNumber + 2];
+  EXPECT_EQ(next, expected);
+}
+
 TEST(Announcement, TellsNameAndData) {
   const auto said = [](const std::string& message) {
     return announced(reinterpret_cast<const std::uint8_t*>(message.data()), message.size());

@@ -151,6 +151,15 @@ TEST_F(EveryLine, IsKeptByTheProgramItself) {
       }
 }
 
+TEST_F(EveryLine, IsKeptInADryRun) {
+  NodeOptions options = site_.options("agent");
+  options.dry_run = true;
+  Node dry(options);
+  EXPECT_NE(endpoint(dry, "drive/direct", true), nullptr);
+  EXPECT_THROW(endpoint(dry, "drive/teleop", true), std::invalid_argument);
+  EXPECT_THROW(endpoint(dry, "drive/estop", false), std::invalid_argument);
+}
+
 TEST_F(EveryLine, IsKeptByTheOthers) {
   const security::Roles& roles = site_.authority().roles();
   for (const security::Role& role : roles.roles)
