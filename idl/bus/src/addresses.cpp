@@ -1,16 +1,18 @@
 #include "addresses.hpp"
 
 #include <algorithm>
+#include <ranges>
+#include <vector>
 
 #include "saphira/base/text.hpp"
 
 namespace saphira::bus::internal {
 
-bool Addresses::due(const Set& seen, Time now) {
+bool Addresses::due(const Devices& seen, Time now) {
   seen_ = seen;
-  Set usable = seen;
+  Devices usable = seen;
   if (!only_.empty())
-    std::erase_if(usable, [&](const std::string& address) { return address != only_; });
+    std::erase_if(usable, [&](const auto& one) { return one.first != only_; });
   if (usable != usable_ || !looked_) {
     // At the start of the program no address has to settle.
     changed_ = looked_ ? now : now - kSettled;
@@ -30,7 +32,8 @@ std::string Addresses::wait() const {
     return {};
   if (only_.empty())
     return "this machine has no network address yet: only its own programs are reached";
-  const std::string all = joined(seen_);
+  const auto names = std::views::keys(seen_);
+  const std::string all = joined(std::vector<std::string>(names.begin(), names.end()));
   return "interface " + only_ + " is no address of this machine" +
          (all.empty() ? ", which has none yet" : ", which has " + all) +
          ": only its own programs are reached";

@@ -4,32 +4,34 @@
 // no clock.
 
 #include <chrono>
-#include <set>
+#include <map>
 #include <string>
 
 namespace saphira::bus::internal {
 
 /// Fast DDS reads the machine's addresses when a participant is made, and never again. So the
-/// network participant is made anew when the machine has an address that was not there before. The
-/// loss of an address needs no action, and an address that returns works as before.
+/// network participant is made anew when the machine has an address that was not there before, or
+/// has it on another device, such as an adapter that was plugged in again: membership in multicast
+/// groups ends with a device. The loss of an address needs no action, and one that returns on its
+/// device works as before.
 class Addresses {
  public:
-  using Set = std::set<std::string>;
-  using Time = std::chrono::nanoseconds;  ///< since some moment
+  using Devices = std::map<std::string, unsigned>;  ///< the index of each address's device
+  using Time = std::chrono::nanoseconds;            ///< since some moment
 
   /// only: the one address to use; empty: all.
   explicit Addresses(std::string only) : only_(std::move(only)) {}
 
   /// The IPv4 addresses of interfaces that are up, without loopback. True: make the network side
   /// now.
-  bool due(const Set& seen, Time now);
+  bool due(const Devices& seen, Time now);
   /// The network side was made with the addresses that were seen last.
   void made() { made_with_ = usable_; }
   /// The network side could not be made; the next attempt is after kPause.
   void failed(Time now) { not_before_ = now + kPause; }
 
   /// Those of the addresses seen last that may be used.
-  const Set& usable() const { return usable_; }
+  const Devices& usable() const { return usable_; }
   /// The awaited address, in words; empty where there is one.
   std::string wait() const;
 
@@ -39,9 +41,9 @@ class Addresses {
 
  private:
   const std::string only_;
-  Set seen_;
-  Set usable_;
-  Set made_with_;
+  Devices seen_;
+  Devices usable_;
+  Devices made_with_;
   bool looked_ = false;
   Time changed_{0};
   Time not_before_{0};

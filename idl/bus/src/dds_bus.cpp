@@ -11,6 +11,7 @@
 #include <fastdds/dds/publisher/qos/PublisherQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 #include <random>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -257,14 +258,15 @@ void Bus::look_at_network() {
     return;
   const auto now = BootClock::now();
   const auto time = now.time_since_epoch();
-  const std::set<std::string> seen = network_addresses();
+  const Addresses::Devices seen = network_addresses();
   bool due = false;
   {
     const std::scoped_lock lock(addresses_mutex_);
     due = addresses_.due(seen, time);
   }
   if (machines_) {
-    machines_->be(seen);
+    const auto own = std::views::keys(seen);
+    machines_->be({own.begin(), own.end()});
     if (now - names_->looked >= kLookUp || names_->looked == BootClock::time_point()) {
       names_->looked = now;
       std::vector<std::string> sought = machines_->unknown();

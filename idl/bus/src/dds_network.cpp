@@ -104,7 +104,7 @@ class OwnAddress {
     if (now - looked_ < std::chrono::seconds(1) && others_.contains(address))
       return false;
     own_ = network_addresses();
-    own_.insert("127.0.0.1");
+    own_.try_emplace("127.0.0.1");
     if (now - looked_ >= std::chrono::seconds(1))
       others_.clear();
     looked_ = now;
@@ -117,7 +117,7 @@ class OwnAddress {
  private:
   std::mutex mutex_;
   BootClock::time_point looked_;
-  std::set<std::string> own_;
+  Addresses::Devices own_;
   std::set<std::string> others_;
 };
 
@@ -137,8 +137,8 @@ SieveDescriptor::Ignore own_programs(bool secured) {
 
 }  // namespace
 
-std::set<std::string> network_addresses() {
-  std::set<std::string> found;
+Addresses::Devices network_addresses() {
+  Addresses::Devices found;
   ifaddrs* all = nullptr;
   if (getifaddrs(&all) != 0)
     return found;
@@ -149,7 +149,7 @@ std::set<std::string> network_addresses() {
     std::array<char, INET_ADDRSTRLEN> text{};
     const auto* const address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
     if (inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr)
-      found.insert(text.data());
+      found.emplace(text.data(), if_nametoindex(one->ifa_name));
   }
   freeifaddrs(all);
   return found;

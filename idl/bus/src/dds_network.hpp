@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <memory>
-#include <set>
 #include <string>
 
+#include "addresses.hpp"
 #include "dds_guard.hpp"
 #include "entrance.hpp"
 #include "fleet.hpp"
@@ -32,7 +32,7 @@ constexpr std::uint32_t kProgramsPerPeer = 20;
 enum class Side : std::size_t { local, network };
 
 /// IPv4 addresses of interfaces that are up and running, without loopback.
-std::set<std::string> network_addresses();
+Addresses::Devices network_addresses();
 
 /// True where a text is an IPv4 address, and no name.
 bool is_address(const std::string& text);
