@@ -437,7 +437,7 @@ constexpr const char* kMapWords = R"(
   saphira map delete             no map
   saphira map put "DOOR (3) 3000, 1000, 90, 900"   adds an artifact, or changes the one of this id
   saphira map remove ID          removes it
-  saphira map place X Y TH       the robot is there [m, rad]; or NAME of a POS of the map
+  saphira map place X Y TH       the robot is there [m, rad, or 90deg]; or NAME of a POS of the map
   saphira map find               the robot may be anywhere: find it
   saphira map on | off           registration (manual 6.9.2)
   saphira map features on | off  whether what is seen and not on the map is added to it

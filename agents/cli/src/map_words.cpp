@@ -91,9 +91,13 @@ Arguments artifact(const std::string& line) {
 }
 
 Pose place_of(const std::vector<std::string>& words, const maps::Map& map) {
-  if (words.size() == 4)
-    return {number(words[1], "x", "m"), number(words[2], "y", "m"),
-            norm2_angle(number(words[3], "the heading", "rad"))};
+  if (words.size() == 4) {
+    const double heading = number(words[3], "the heading", "rad");
+    if (std::abs(heading) > 2.0 * kPi)
+      throw std::invalid_argument("expected the heading [rad] from -2 pi to 2 pi, found \"" +
+                                  words[3] + "\"; degrees are written " + words[3] + "deg");
+    return {number(words[1], "x", "m"), number(words[2], "y", "m"), norm2_angle(heading)};
+  }
   if (words.size() != 2)
     complain(words);
   const auto places = maps::named(map, lps::PointType::position, words[1]);

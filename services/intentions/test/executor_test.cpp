@@ -35,6 +35,22 @@ TEST(Executor, RefusesWhatIsTooMany) {
   EXPECT_EQ(bench.status(5).reason, "too many goals: 3 are open already");
 }
 
+TEST(Executor, AProgramLeavesRoomForTheGoalsOfOthers) {
+  ExecutorOptions options;
+  options.max_open_of_one = 2;
+  Bench bench({}, options);
+  for (std::uint64_t i = 1; i <= 3; ++i)
+    bench.ask(i, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.state(2), v1::GOAL_WAITING);
+  EXPECT_EQ(bench.status(3).code, v1::CODE_TOO_MANY);
+  Goal other = bench.goal(4, "drive", kSlow);
+  ++other.id.writer;
+  bench.write(other);
+  bench.step();
+  EXPECT_EQ(bench.state(4), v1::GOAL_WAITING);
+}
+
 constexpr v1::StopId kFirst{7, 1};
 constexpr v1::StopId kSecond{7, 2};
 

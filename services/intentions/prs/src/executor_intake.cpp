@@ -70,11 +70,19 @@ void Executor::take_written(const GoalEvent& event) {
   if (wrong.empty())
     wrong = complaint(event, code, complete);
   if (wrong.empty()) {
-    const auto count = std::count_if(entries_.begin(), entries_.end(),
-                                     [](const auto& each) { return each.second.open(); });
-    if (static_cast<std::size_t>(count) > options_.max_open) {
+    std::size_t all = 0;
+    std::size_t own = 0;
+    for (const auto& [id, each] : entries_) {
+      all += each.open() ? 1 : 0;
+      own += each.open() && id.writer == goal.id.writer ? 1 : 0;
+    }
+    if (all > options_.max_open || own > options_.max_open_of_one) {
       code = v1::CODE_TOO_MANY;
-      wrong = "too many goals: " + std::to_string(options_.max_open) + " are open already";
+      wrong = "too many goals: " +
+              (own > options_.max_open_of_one
+                   ? std::to_string(options_.max_open_of_one) + " of this program"
+                   : std::to_string(options_.max_open)) +
+              " are open already";
     }
   }
   if (!wrong.empty()) {

@@ -82,9 +82,10 @@ struct Outputs {
 };
 
 struct ExecutorOptions {
-  double keep_ended = 60.0;      ///< [s] of robot time for an ended goal's status
-  std::size_t max_shown = 1024;  ///< ended goals with a status; the oldest are withdrawn
-  std::size_t max_open = 256;    ///< goals that may be open at once
+  double keep_ended = 60.0;          ///< [s] of robot time for an ended goal's status
+  std::size_t max_shown = 1024;      ///< ended goals with a status; the oldest are withdrawn
+  std::size_t max_open = 256;        ///< goals that may be open at once
+  std::size_t max_open_of_one = 64;  ///< of a program, so that it leaves room for those of others
   std::size_t max_ended = kMostEndings;
   bool remembers_work = false;  ///< true: GoalUpdates::work is saved
   /// The functions for activities; their conditions are beliefs. None: core_functions().
