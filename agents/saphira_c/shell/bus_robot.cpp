@@ -60,6 +60,10 @@ class BusRobot final : public Robot {
     const std::lock_guard lock(mutex_);
     return std::exchange(was_stopped_, false);
   }
+  std::string take_driver() override {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(driver_, {});
+  }
   void stop() override { ask({bus::topics::kDriveStop, bus::request("stop")}); }
   std::optional<Found> found() override {
     const std::lock_guard lock(mutex_);
@@ -291,6 +295,11 @@ class BusRobot final : public Robot {
     if (!grant)
       return;
     take_stop(ends, *grant);
+    const bool drives = is_named(grant->source, source_);
+    if (std::exchange(drives_, drives) && grant->role == v1::ROLE_TELEOP) {
+      const std::lock_guard lock(mutex_);
+      driver_ = grant->source;
+    }
     // A driver that asked under an emergency stop has to let go once after its reset.
     if (std::exchange(estopped_, grant->estopped) && !grant->estopped)
       write(ends.node, ends, {.stamp = stamp_});
@@ -466,6 +475,7 @@ class BusRobot final : public Robot {
   std::string news_;
   bool told_limit_ = false;
   bool estopped_ = false;  // by the newest grant
+  bool drives_ = false;    // likewise
   bus::StopNotice notice_;
 
   // Shared with the program's thread, as those of Robot.
@@ -476,6 +486,7 @@ class BusRobot final : public Robot {
   std::map<int, reflector::Bucket> buckets_;
   std::optional<v1::MotorCommand> wish_;
   bool was_stopped_ = false;  // since take_stop()
+  std::string driver_;        // since take_driver()
   std::vector<Call> calls_;
   std::vector<std::string> told_;
   std::vector<Drawn> drawn_;

@@ -60,6 +60,7 @@ void sfSetVelocity(int vel) {
   os.motion.velocity = vel / 1000.0;
   tell_limit("sfSetVelocity", vel, "mm/s", os.parameters.max_velocity * 1000.0);
   os.position_target.reset();
+  os.position_dropped = false;
 }
 
 void sfSetRVelocity(int rvel) {
@@ -96,6 +97,7 @@ void sfSetPosition(int dist) {
   os.motion.distance = dist / 1000.0;
   ++os.motion.move;
   os.position_target = os.travelled + os.motion.distance;
+  os.position_dropped = false;
 }
 
 void sfSetMaxVelocity(int vel) {
@@ -115,8 +117,9 @@ void sfStopRobot(void) {
 int sfDonePosition(int dist) {
   const std::lock_guard lock(Os::get().mutex);
   const Os& os = Os::get();
-  return !os.position_target ||
-         std::abs(*os.position_target - os.travelled) <= std::abs(dist) / 1000.0;
+  return os.position_target
+             ? std::abs(*os.position_target - os.travelled) <= std::abs(dist) / 1000.0
+             : !os.position_dropped;
 }
 
 int sfDoneHeading(int ang) {

@@ -229,6 +229,8 @@ void Os::step(const Reflected& now) {
   if (robot && robot->take_stop())
     hear_stop();
   if (robot)
+    give_way(robot->take_driver());
+  if (robot)
     for (const Vec2& at : robot->pointed_out())
       click(relative(robot_in_odom, Pose{at.x(), at.y(), 0.0}).position());
   run_tasks();
@@ -253,6 +255,7 @@ void Os::step(const Reflected& now) {
 /// Somebody has stopped the robot: the program's motion of before is over.
 void Os::hear_stop() {
   const std::lock_guard lock(mutex);
+  position_dropped = position_dropped || position_target.has_value();
   let_go();
   stopped = true;
   const bool has_behaviors =
@@ -262,6 +265,16 @@ void Os::hear_stop() {
     behaviors_drive_ = false;
     say("the behaviors do not drive any more: sfBehaviorControl = 1 lets them drive again", false);
   }
+}
+
+/// A person has taken the wheels: a way from there is another one.
+void Os::give_way(const std::string& driver) {
+  const std::lock_guard lock(mutex);
+  if (driver.empty() || !position_target)
+    return;
+  let_go();
+  position_dropped = true;
+  say(driver + " has driven the robot: the way of sfSetPosition is over", false);
 }
 
 void Os::let_go() {
@@ -320,6 +333,7 @@ bool Os::connect(const std::string& address) {
 void Os::stop_robot() {
   const std::lock_guard lock(mutex);
   let_go();
+  position_dropped = false;
   motion.translation = reflector::Translation::velocity;
   motion.rotation = reflector::Rotation::velocity;
   if (robot_)

@@ -41,7 +41,8 @@ struct Task {
   bool of_library = false;  ///< a process of the manual's 6.2, or a behavior's place in 8.5
   bool intention = false;
   bool removed = false;
-  std::uint64_t age = 0;  ///< [cycles] of an intention
+  bool overruled = false;  ///< another thread has set its state during its turn
+  std::uint64_t age = 0;   ///< [cycles] of an intention
   std::vector<beh_param> params;
 };
 
@@ -52,6 +53,7 @@ struct Closure {
   std::string schema;  ///< of the executive
   bool removed = false;
   std::vector<beh_param> params;
+  std::vector<std::vector<beh_param>> replaced;  ///< since its newest update, which may have them
 };
 
 /// An artifact on the pointlist, with its last written state.
@@ -139,6 +141,7 @@ class Os {
   reflector::Motion motion;
   double travelled = 0.0;                 ///< [m]
   std::optional<double> position_target;  ///< [m] on that scale
+  bool position_dropped = false;          ///< by a stop or a person, before it was reached
   double target_heading = 0.0;            ///< [rad] in odom
   /// Somebody has stopped the robot, and neither sfSetVelocity(0) nor sfStopRobot was called since,
   /// nor have the behaviors begun anew: the motion does not go to the wheels.
@@ -158,6 +161,7 @@ class Os {
   void session_ended();
   void step(const Reflected& now);
   void hear_stop();
+  void give_way(const std::string& driver);
   void go_on_to_position();
   void clamp(const reflector::State& now);
   View shown();

@@ -52,8 +52,10 @@ class Line {
 
   bool send(const protocol::Bytes& bytes) { return link_.write(bytes, BootClock::seconds()); }
 
-  /// The next whole packet within so many seconds.
+  /// The next whole packet within so many seconds; one that is there unread is the next.
   bool have(double seconds) {
+    if (there_ && at_ == 0)
+      return true;
     const double until = BootClock::seconds() + seconds;
     while (true) {
       if (std::optional<protocol::Bytes> body = next()) {

@@ -153,6 +153,7 @@ void Os::run_task(Task& task) {
   }
   const double begun = BootClock::seconds();
   current = &task;
+  task.overruled = false;
   process_state = its_state;
   task.shown.fn();
   // A task of the library works in any its_state, and cleans up on request.
@@ -162,8 +163,8 @@ void Os::run_task(Task& task) {
     process_state = 10;
   const std::lock_guard lock(mutex);
   current = nullptr;
-  // sfREMOVE, which a program writes into the structure, stays.
-  if (its_state != sfREMOVE)
+  // sfREMOVE, which a program writes into the structure, stays, and so does another thread's word.
+  if (its_state != sfREMOVE && !task.overruled)
     its_state = process_state;
   if (!task.of_library)
     mind_time(task, BootClock::seconds() - begun);
@@ -297,8 +298,12 @@ void set_state(const char* function, process* p, int state) {
   if (task == nullptr)
     return;
   task->shown.state = state;
-  if (Os::get().on_task_thread() && Os::get().current == task)
+  if (Os::get().current != task)
+    return;
+  if (Os::get().on_task_thread())
     process_state = state;
+  else
+    task->overruled = true;
 }
 
 void set_own_state(const char* function, int state) {

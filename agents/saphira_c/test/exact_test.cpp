@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 #include "../shell/bus_robot.hpp"
 #include "../src/os.hpp"
 #include "node_options.hpp"
@@ -118,6 +121,49 @@ TEST_F(OnMemory, AfterAStopCommandsAreDroppedUntilItIsTaken) {
   EXPECT_TRUE(robot_->take_stop());
   drive(0.2);
   EXPECT_EQ(until(0.2), std::vector<double>{0.2});
+}
+
+TEST_F(OnMemory, APersonWhoTakesTheWheelsIsTold) {
+  v1::Grant grant{.stamp = stamp_, .role = v1::ROLE_TELEOP, .source = "ann"};
+  grants_.write(grant);  // the program has not driven
+  grant = {.stamp = stamp_, .role = v1::ROLE_DIRECT, .source = "program"};
+  grants_.write(grant);
+  // Grants are read as the newest: each has to be seen before the next.
+  grant.estopped = true;
+  EXPECT_TRUE(test::wait_until([&] {
+    grants_.write(grant);
+    grant.estopped = !grant.estopped;
+    return commands_.take_newest().has_value();
+  }));
+  EXPECT_EQ(robot_->take_driver(), "");
+  grant = {.stamp = stamp_, .role = v1::ROLE_TELEOP, .source = "ann"};
+  grants_.write(grant);
+  std::string driver;
+  EXPECT_TRUE(test::wait_until([&] { return !(driver = robot_->take_driver()).empty(); }));
+  EXPECT_EQ(driver, "ann");
+  EXPECT_EQ(robot_->take_driver(), "");
+}
+
+TEST(Tasks, AWordOfAnotherThreadOutlastsTheTurn) {
+  static std::atomic<bool> runs;
+  runs = false;
+  process* const task = sfInitProcess(
+      [] {
+        if (process_state != sfINIT)
+          return;
+        runs = true;
+        while (runs)
+          std::this_thread::yield();
+        process_state = 20;
+      },
+      "busy");
+  std::thread turn([] { Os::get().run_tasks(); });
+  EXPECT_TRUE(test::wait_until([] { return runs.load(); }));
+  sfSuspendProcess(task, 5);
+  runs = false;
+  turn.join();
+  EXPECT_EQ(task->state, -5);
+  task->state = sfREMOVE;
 }
 
 TEST_F(OnMemory, SfMoveRobotHoldsUntilRegistrationHasAnswered) {
