@@ -7,6 +7,7 @@
 
 #include "lockstep.hpp"
 #include "pages.hpp"
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/protocol/parameters.hpp"
@@ -25,7 +26,6 @@ TEST(OwnRobot, DrivesByACopyOfTheNearestRobotsFile) {
 
   LockstepSystem system({.world = read_file(source("config/worlds/office.wld")), .robot = file});
   auto descriptions = system.node.reader(bus::topics::kRobotDescription);
-  std::optional<v1::RobotDescription> description;
   std::uint64_t permitted = 0;
   for (const std::string& command : commands_of("docs/robots-of-others.md")) {
     if (!command.starts_with("saphira goal ")) {
@@ -38,15 +38,13 @@ TEST(OwnRobot, DrivesByACopyOfTheNearestRobotsFile) {
       words.push_back(word);
     const v1::GoalId id = system.ask(cli::parse_request(words));
     system.permit(permitted += 600);
-    const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
-      if (auto newest = descriptions.take_newest())
-        description = std::move(newest);
-    });
+    const std::optional<v1::GoalStatus> status = system.wait_end(id);
     ASSERT_TRUE(status) << command << system.output();
     EXPECT_EQ(status->state, v1::GOAL_SUCCEEDED) << status->reason << system.output();
   }
   EXPECT_GT(permitted, 0U) << "the page drives";
-  ASSERT_TRUE(description);
+  std::optional<v1::RobotDescription> description;
+  ASSERT_TRUE(wait_until([&] { return (description = descriptions.take_newest()).has_value(); }));
   EXPECT_EQ(description->robot_subclass, "my-robot");
   EXPECT_EQ(description->parameter_file, file);
   EXPECT_NEAR(description->radius, 0.24, 1e-6);
