@@ -78,6 +78,7 @@ Sender sender_of(std::string_view message) {
   if (message.size() > Session::kLongestLine)
     return sender;
   const Json json = parsed(message).json;
+  sender.answers = is_answer(json) || (json.is_array() && std::ranges::any_of(json, is_answer));
   if (!json.is_object())
     return sender;
   const Json& parameters = member(json, "params");

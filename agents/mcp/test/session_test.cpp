@@ -113,7 +113,7 @@ TEST(McpSession, ASenderIsKnownByWhatItSays) {
   EXPECT_EQ(sender_of(meta.dump()).tool, "");
   for (const char* text : {"", "[]", "{", "3", R"({"params":[]})", R"({"params":{"_meta":1}})"}) {
     const Sender sender = sender_of(text);
-    EXPECT_FALSE(sender.begins || sender.modern) << text;
+    EXPECT_FALSE(sender.begins || sender.modern || sender.answers) << text;
   }
 }
 
@@ -160,6 +160,7 @@ TEST(McpSession, APingIsAnsweredByAClientThatIsThere) {
   EXPECT_EQ(ping["method"], "ping");
   const std::string answer =
       Json{{"jsonrpc", "2.0"}, {"id", ping["id"]}, {"result", Json::object()}}.dump();
+  EXPECT_TRUE(sender_of(answer).answers);
   EXPECT_TRUE(client.say(answer).empty());
 }
 

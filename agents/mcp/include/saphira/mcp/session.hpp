@@ -69,11 +69,12 @@ struct Headers {
 
 /// The client of a message of HTTP, as far as the message identifies it.
 struct Sender {
-  bool begins = false;  ///< it is `initialize`
-  bool modern = false;  ///< the newer era, without sessions
-  std::string client;   ///< identity from the newer era's client, as JSON
-  std::string name;     ///< of the client's program, on one line [empty: not given]
-  std::string tool;     ///< that it calls [empty: none]
+  bool begins = false;   ///< it is `initialize`
+  bool modern = false;   ///< the newer era, without sessions
+  bool answers = false;  ///< it is the answer to a ping
+  std::string client;    ///< identity from the newer era's client, as JSON
+  std::string name;      ///< of the client's program, on one line [empty: not given]
+  std::string tool;      ///< that it calls [empty: none]
   bool operator==(const Sender&) const = default;
 };
 Sender sender_of(std::string_view message);
