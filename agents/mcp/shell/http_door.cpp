@@ -160,6 +160,8 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   console::AccessSettings here;
   here.port = port();
   presence_.came(id, !console::may_watch(here, request.caller), now());
+  if (sender.answers)
+    presence_.answered(id);
   see(id, *client);
   const Headers headers{request.version, request.mcp_method, request.mcp_name};
   client->waits[exchange] = false;

@@ -37,7 +37,7 @@ void Clients::see(const std::string& id, const State& state, double now) {
   client.lost = client.lost && state.busy;
   if (state.silent)
     client.seen = now;
-  const bool by_messages = state.busy && (client.hidden || state.streams);
+  const bool by_messages = state.busy && (client.hidden || (client.answers && state.streams));
   if (!by_messages && (closes || state.connections > 0))
     client.seen = std::max(client.seen, closes ? now : std::min(state.heard, now));
 }

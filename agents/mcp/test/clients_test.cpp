@@ -20,6 +20,8 @@ class Presence {
     std::string last;
     double now = 0.0;
     in >> verb;
+    if (verb == "answered")
+      return clients_.answered("a");
     if (verb == "busy" || verb == "silent") {
       in >> more;
       (verb == "busy" ? state_.busy : state_.silent) = more == "yes";

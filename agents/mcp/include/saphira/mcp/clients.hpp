@@ -15,8 +15,7 @@ class Clients {
   struct State {
     int connections = 0;   ///< open
     double heard = 0.0;    ///< [s] newest acknowledgment from the other side of any of them
-    bool streams = false;  ///< a ping reaches it: with a goal, silence is absence then, as a tunnel
-                           ///< keeps its connections when the client has gone
+    bool streams = false;  ///< a ping reaches it
     bool waits = false;    ///< a call is not answered yet
     bool busy = false;     ///< a goal is underway
     bool silent = false;   ///< its person is asked if that may begin: it says nothing meanwhile
@@ -32,6 +31,9 @@ class Clients {
   /// A message of the client. hidden: a proxy has passed it on. Until the next message its
   /// connections are those of the proxy, which keeps them when the client has gone.
   void came(const std::string& id, bool hidden, double now);
+  /// The message is the answer to a ping: from now on silence after a ping is absence. A tunnel
+  /// that nothing shows hides its client, too.
+  void answered(const std::string& id) { all_.at(id).answers = true; }
   /// Call before each decision, and at least ten times a second.
   void see(const std::string& id, const State& state, double now);
 
@@ -60,8 +62,9 @@ class Clients {
     double seen = 0.0;   ///< [s] newest sign
     State state = {};
     bool hidden = false;
-    bool lost = false;    ///< its goals, in this absence
-    double pinged = 0.0;  ///< [s]
+    bool answers = false;  ///< pings
+    bool lost = false;     ///< its goals, in this absence
+    double pinged = 0.0;   ///< [s]
   };
   std::map<std::string, Client> all_;
   std::size_t count_ = 0;
