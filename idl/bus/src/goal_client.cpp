@@ -66,9 +66,15 @@ void GoalClient::cancel(const v1::GoalId& id, const std::string& why, const v1::
 }
 
 void GoalClient::leave() {
+  constexpr int kHeard = 500;  // [ms] a writer that ends repeats nothing
+  bool withdraws = false;
   for (auto& [key, own] : own_)
-    if (!own.over && own.goal.writer_lost == v1::WRITER_LOST_CANCEL && writer_.dispose(own.goal))
+    if (!own.over && own.goal.writer_lost == v1::WRITER_LOST_CANCEL && writer_.dispose(own.goal)) {
       own.over = Clock::now();
+      withdraws = true;
+    }
+  if (withdraws)
+    writer_.wait_acknowledged(kHeard);
 }
 
 void GoalClient::poll() {
