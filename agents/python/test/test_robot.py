@@ -201,6 +201,7 @@ def test_another_thread_closes_a_robot(robot: saphira.Robot) -> None:
 def test_a_handler_of_a_signal_closes_a_robot_in_its_wait(robot: saphira.Robot) -> None:
     other = saphira.connect("closed by a signal")
     goal = other.go("D")
+    until(lambda: goal.status is not None)  # a goal that is withdrawn unheard has no status
     before = signal.signal(signal.SIGALRM, lambda *_: other.close())
     signal.setitimer(signal.ITIMER_REAL, 0.2)
     with pytest.raises(RuntimeError, match="closed"):
