@@ -71,13 +71,9 @@ class InC final : public behaviors::Behavior {
   behaviors::Evaluation update(const behaviors::Parameters& parameters,
                                const behaviors::Context&) override {
     behaviors::Evaluation result;
-    Closure* const closure = closure_of(parameters);
+    const Closure* const closure = closure_of(parameters);
     if (closure == nullptr)
       return result;
-    {
-      const std::lock_guard lock(Os::get().mutex);
-      closure->replaced.clear();
-    }
     const behavior& code = *closure->shown.beh;
     c_act_t = c_act_v = 1.0F;
     c_goal = c_progress = 0.0F;
@@ -93,7 +89,7 @@ class InC final : public behaviors::Behavior {
   }
 
  private:
-  static Closure* closure_of(const behaviors::Parameters& parameters) {
+  static const Closure* closure_of(const behaviors::Parameters& parameters) {
     const std::lock_guard lock(Os::get().mutex);
     const auto index = static_cast<std::size_t>(parameters.number("closure"));
     const auto& all = Os::get().closures;
@@ -178,7 +174,7 @@ Closure* Os::add_closure(behavior* b, int priority, bool running, std::vector<be
   }
   const auto known = predefined().find(b);
   closure->schema = known == predefined().end() ? kInC : known->second.schema;
-  closure->replaced.push_back(std::exchange(closure->params, std::move(params)));
+  replaced_.push_back(std::exchange(closure->params, std::move(params)));
   closure->params.resize(std::max<std::size_t>(closure->params.size(), 1));
   closure->shown = {closure->name.c_str(),  b,    priority, running ? TRUE : FALSE,
                     closure->params.data(), 0.0F, 0.0F,     0.0F};

@@ -224,6 +224,7 @@ void Os::step(const Reflected& now) {
     publish(shown());
     update_points();
     behaviors_said_ = {};
+    replaced_.clear();
   }
   take_keys();
   if (robot && robot->take_stop())

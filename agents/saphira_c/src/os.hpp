@@ -53,7 +53,6 @@ struct Closure {
   std::string schema;  ///< of the executive
   bool removed = false;
   std::vector<beh_param> params;
-  std::vector<std::vector<beh_param>> replaced;  ///< since its newest update, which may have them
 };
 
 /// An artifact on the pointlist, with its last written state.
@@ -223,6 +222,9 @@ class Os {
   std::optional<registration::Core::Settings> map_;  ///< to be used from the next cycle on
   std::string behavior_trouble_;
   behaviors::Output behaviors_said_;  ///< in this cycle
+  /// Parameters of behaviors that were initialized again in this cycle: an update may be reading
+  /// them.
+  std::vector<std::vector<beh_param>> replaced_;
 };
 
 wall to_c(const maps::Feature& feature);

@@ -146,7 +146,7 @@ class Robot {
   /// True where somebody has stopped the robot since the last call. Until it, motion commands are
   /// dropped.
   virtual bool take_stop() { return false; }
-  /// The person who has taken the wheels from this program since the last call; empty: nobody.
+  /// The driver in role teleop that preempted this program since the last call; empty: none.
   virtual std::string take_driver() { return {}; }
   /// Asks the bridge to end whatever moves the robot.
   virtual void stop() {}

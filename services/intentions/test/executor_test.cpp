@@ -22,33 +22,24 @@ TEST(Executor, OfALongReasonTheBeginningIsRemembered) {
   EXPECT_EQ(again.status(1).reason, whole.substr(0, kLongestReason - 3) + "...");
 }
 
-TEST(Executor, RefusesWhatIsTooMany) {
+TEST(Executor, RefusesWhatIsTooManyOfOneProgramAndOfAll) {
   ExecutorOptions options;
-  options.max_open = 3;
+  options.max_open = 4;
+  options.max_open_of_one = 3;
   Bench bench({}, options);
-  for (std::uint64_t i = 1; i <= 5; ++i)
-    bench.ask(i, "drive", kSlow);
+  for (std::uint64_t i = 1; i <= 6; ++i) {
+    Goal goal = bench.goal(i, "drive", kSlow);
+    if (i > 4)
+      ++goal.id.writer;
+    bench.write(goal);
+  }
   bench.step();
   EXPECT_EQ(bench.state(3), v1::GOAL_WAITING);
-  EXPECT_EQ(bench.state(4), v1::GOAL_REFUSED);
-  EXPECT_EQ(bench.status(5).code, v1::CODE_TOO_MANY);
-  EXPECT_EQ(bench.status(5).reason, "too many goals: 3 are open already");
-}
-
-TEST(Executor, AProgramLeavesRoomForTheGoalsOfOthers) {
-  ExecutorOptions options;
-  options.max_open_of_one = 2;
-  Bench bench({}, options);
-  for (std::uint64_t i = 1; i <= 3; ++i)
-    bench.ask(i, "drive", kSlow);
-  bench.step();
-  EXPECT_EQ(bench.state(2), v1::GOAL_WAITING);
-  EXPECT_EQ(bench.status(3).code, v1::CODE_TOO_MANY);
-  Goal other = bench.goal(4, "drive", kSlow);
-  ++other.id.writer;
-  bench.write(other);
-  bench.step();
-  EXPECT_EQ(bench.state(4), v1::GOAL_WAITING);
+  EXPECT_EQ(bench.status(4).code, v1::CODE_TOO_MANY);
+  EXPECT_EQ(bench.status(4).reason, "too many goals: 3 of this program are open already");
+  EXPECT_EQ(bench.state(5), v1::GOAL_WAITING);
+  EXPECT_EQ(bench.status(6).code, v1::CODE_TOO_MANY);
+  EXPECT_EQ(bench.status(6).reason, "too many goals: 4 are open already");
 }
 
 constexpr v1::StopId kFirst{7, 1};

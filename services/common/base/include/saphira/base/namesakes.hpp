@@ -37,8 +37,8 @@ void take_member(A& all, const B& given, std::index_sequence<from...> /*all*/) {
 }  // namespace detail
 
 /// Takes a value of the same meaning: numbers and texts as they are, enumerators and the members of
-/// plain structs by their names, sequences item by item. An unknown enumerator, and a member
-/// without a namesake or of another kind, leaves what is there.
+/// plain structs by their names, sequences item by item. These stay as they are: an enumerator that
+/// is unknown, and members of `to` for which `from` has no member of that name and kind.
 template <class To, class From>
 void take(To& to, const From& from) {
   if constexpr (std::is_convertible_v<From, To>) {
